@@ -1,0 +1,44 @@
+// Sweep: one revolution of samples, and what the line lost while it was gathered.
+#pragma once
+
+#include "driver/protocol/sample.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <vector>
+
+namespace sweepcast::protocol {
+
+/// Counts of what was lost before decoding.
+struct LineLosses {
+    std::uint64_t checksum_errors{};
+    std::uint64_t skipped_bytes{};
+    /// Samples of a revolution that was given up: the one under way at a restart of the angle
+    /// reference, or one that grew beyond any plausible size.
+    std::uint64_t discarded_samples{};
+
+    LineLosses& operator+=(const LineLosses& other) {
+        checksum_errors += other.checksum_errors;
+        skipped_bytes += other.skipped_bytes;
+        discarded_samples += other.discarded_samples;
+        return *this;
+    }
+    bool operator==(const LineLosses&) const = default;
+};
+
+/// One revolution, its samples in the order they were measured.
+struct Sweep {
+    std::vector<Sample> samples;
+    /// From the first sample of this sweep to the first of the next: one turn.
+    std::chrono::microseconds period{};
+    /// What was lost since the previous sweep was given out.
+    LineLosses losses;
+
+    /// Turns per second; 0 if the period is not known.
+    [[nodiscard]] double rotation_hz() const {
+        return period.count() > 0 ? 1e6 / static_cast<double>(period.count()) : 0.0;
+    }
+    bool operator==(const Sweep&) const = default;
+};
+
+}  // namespace sweepcast::protocol
