@@ -1,0 +1,31 @@
+// CapturedSweep: a sweep together with where, how and when it was taken. What the driver hands to its user.
+#pragma once
+
+#include "driver/protocol/answer_type.hpp"
+#include "driver/protocol/sweep.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace sweepcast::device {
+
+struct CapturedSweep {
+    protocol::Sweep sweep;
+    /// Id of the lidar, and its place in the gateway's list, from 1 (the id changes once when the
+    /// lidar is identified, the number never).
+    std::string lidar;
+    std::uint32_t lidar_number{};
+    /// Counts this lidar's sweeps from 1.
+    std::uint64_t sequence{};
+    /// Name of the scan mode, as the lidar gives it.
+    std::string mode;
+    protocol::AnswerType answer_type{protocol::AnswerType::normal};
+    /// From one sample to the next, as the lidar reports it for this mode.
+    std::chrono::microseconds sample_duration{};
+    /// Add it to a sample's time to get UNIX time. Taken once a sweep, so that a step of the wall
+    /// clock shows between sweeps and never within one.
+    std::chrono::nanoseconds monotonic_to_unix{};
+};
+
+}  // namespace sweepcast::device
