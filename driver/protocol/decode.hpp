@@ -1,4 +1,5 @@
-// Measurement bytes -> samples, whatever the answer type. The state machine of each type has a file of its own.
+// Measurement bytes -> samples, whatever the answer type. The state machine of each type has a file
+// of its own.
 #pragma once
 
 #include "driver/protocol/answer_type.hpp"
@@ -13,7 +14,8 @@
 
 namespace sweepcast::protocol {
 
-/// Decodes one measurement stream. Feed it the bytes that follow the response descriptor, cut anywhere.
+/// Decodes one measurement stream. Feed it the bytes that follow the response descriptor, cut
+/// anywhere.
 class Decoder {
 public:
     /// A decoder for the stream that a descriptor announced.

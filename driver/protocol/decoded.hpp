@@ -31,10 +31,10 @@ struct DecodeSettings {
 };
 
 enum class DecodeEventKind : std::uint8_t {
-    checksum_error,    ///< a packet was damaged and dropped
-    encoder_reset,     ///< a restart came while a capsule was held: that capsule is lost
-    scan_reset,        ///< the device restarted its angle reference: the unfinished revolution is void
-    bytes_skipped,     ///< `count` bytes belonged to no packet
+    checksum_error,  ///< a packet was damaged and dropped
+    encoder_reset,   ///< a restart came while a capsule was held: that capsule is lost
+    scan_reset,     ///< the device restarted its angle reference: the unfinished revolution is void
+    bytes_skipped,  ///< `count` bytes belonged to no packet
 };
 
 /// Something that happened between samples.

@@ -1,4 +1,5 @@
-// Result<T>: what a function that can fail in an expected way gives back; Problem: a failure that a person will read.
+// Result<T>: what a function that can fail in an expected way gives back; Problem: a failure that a
+// person will read.
 #pragma once
 
 #include <boost/system/error_code.hpp>
@@ -16,7 +17,8 @@ struct [[nodiscard]] Result : boost::system::result<T, E> {
     using boost::system::result<T, E>::result;
 };
 
-/// A failure as an operator should read it: what happened, with the values of this case, and the next step.
+/// A failure as an operator should read it: what happened, with the values of this case, and the
+/// next step.
 struct Problem {
     error_code code;
     std::string cause;  ///< e.g. "/dev/ttyUSB0 is held by ModemManager (process 812)"

@@ -7,13 +7,15 @@
 
 namespace sweepcast::protocol {
 
-/// One measurement as decoded, bit for bit what the vendor's decoder gives (protocol.md 7.0), with a time of its own.
+/// One measurement as decoded, bit for bit what the vendor's decoder gives (protocol.md 7.0), with
+/// a time of its own.
 struct Sample {
     /// When the measurement was taken, on the host's monotonic clock (protocol.md 8).
     SampleTime time{};
     DistanceQ2 distance{};
     AngleQ14 angle{};
-    /// Strength of the echo, 0..255; types that do not measure it report 188 with an echo and 0 without.
+    /// Strength of the echo, 0..255; types that do not measure it report 188 with an echo and 0
+    /// without.
     std::uint8_t quality{};
     /// Bit 0: first sample of a revolution. Bit 1: not the first (set by some answer types only).
     std::uint8_t flag{};

@@ -16,7 +16,8 @@ struct AngleQ14 {
 };
 static_assert(AngleQ14{16384}.degrees() == 90.0);
 
-/// An angle in 1/64 degree (1/23040 turn), the unit of capsules' start angles. May exceed 360 degrees on the wire.
+/// An angle in 1/64 degree (1/23040 turn), the unit of capsules' start angles. May exceed 360
+/// degrees on the wire.
 struct AngleQ6 {
     std::uint16_t raw{};
     [[nodiscard]] constexpr double degrees() const { return raw * (1.0 / 64.0); }
