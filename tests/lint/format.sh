@@ -1,10 +1,18 @@
 #!/usr/bin/env bash
-# Checks that every C++ source is formatted as .clang-format says. To format them: format.sh --fix
+# Lists the C++ sources that are not formatted as .clang-format says; exit code 1 if any. format.sh --fix formats them.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
-action=(--dry-run -Werror)
+mapfile -t sources < <(find driver server tests -name '*.[ch]pp' | sort)
 if [[ ${1:-} == --fix ]]; then
-    action=(-i)
+    clang-format --style=file -i "${sources[@]}"
+    exit
 fi
-find driver server tests -name '*.[ch]pp' -print0 | xargs -0 clang-format --style=file "${action[@]}"
+status=0
+for source in "${sources[@]}"; do
+    if ! clang-format --style=file "$source" | cmp --silent - "$source"; then
+        printf '%s is not formatted (tests/lint/format.sh --fix formats all)\n' "$source"
+        status=1
+    fi
+done
+exit "$status"

@@ -10,4 +10,4 @@ mapfile -t scripts < <(
 for script in "${scripts[@]}"; do
     bash -n "$script"
 done
-shellcheck --external-sources --source-path=SCRIPTDIR "${scripts[@]}"
+shellcheck --external-sources --source-path=SCRIPTDIR --source-path=SCRIPTDIR/lib "${scripts[@]}"
