@@ -13,16 +13,26 @@ public:
 
     [[nodiscard]] std::string message(int value) const override {
         switch (static_cast<errc>(value)) {
-        case errc::timed_out: return "nothing came in time";
-        case errc::interrupted: return "the operation was interrupted";
-        case errc::disconnected: return "the device is gone: unplugged or powered off";
-        case errc::no_modem_lines: return "the line has no modem lines (DTR)";
-        case errc::port_not_found: return "there is no such port";
-        case errc::permission_denied: return "no permission to open the port";
-        case errc::port_busy: return "the port is in use";
-        case errc::not_a_serial_port: return "not a serial port";
-        case errc::baud_not_supported: return "the adapter cannot run at this baud rate";
-        case errc::io_error: return "the system could not read or write the port";
+        case errc::timed_out:
+            return "nothing came in time";
+        case errc::interrupted:
+            return "the operation was interrupted";
+        case errc::disconnected:
+            return "the device is gone: unplugged or powered off";
+        case errc::no_modem_lines:
+            return "the line has no modem lines (DTR)";
+        case errc::port_not_found:
+            return "there is no such port";
+        case errc::permission_denied:
+            return "no permission to open the port";
+        case errc::port_busy:
+            return "the port is in use";
+        case errc::not_a_serial_port:
+            return "not a serial port";
+        case errc::baud_not_supported:
+            return "the adapter cannot run at this baud rate";
+        case errc::io_error:
+            return "the system could not read or write the port";
         }
         return "unknown link error " + std::to_string(value);
     }

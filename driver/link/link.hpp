@@ -31,15 +31,13 @@ public:
     /// of a cancellation are delivered, never lost.
     /// Errors: errc::timed_out, errc::interrupted (also if the coroutine was cancelled meanwhile),
     /// errc::disconnected, errc::io_error.
-    [[nodiscard]] virtual boost::asio::awaitable<Result<std::size_t>> read_some(
-        std::span<std::uint8_t> into, Deadline deadline
-    ) = 0;
+    [[nodiscard]] virtual boost::asio::awaitable<Result<std::size_t>>
+    read_some(std::span<std::uint8_t> into, Deadline deadline) = 0;
 
     /// Writes all of `bytes`. After an error some of them may have been sent.
     /// Errors: as read_some.
-    [[nodiscard]] virtual boost::asio::awaitable<Result<void>> write_all(
-        std::span<const std::uint8_t> bytes, Deadline deadline
-    ) = 0;
+    [[nodiscard]] virtual boost::asio::awaitable<Result<void>>
+    write_all(std::span<const std::uint8_t> bytes, Deadline deadline) = 0;
 
     /// Ends the pending operations with errc::interrupted; if none is pending, the next read_some
     /// ends so at once. No wake-up is lost: if a pending read completes with bytes at this moment,

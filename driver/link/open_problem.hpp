@@ -1,0 +1,39 @@
+// Why a port could not be opened, in words: what happened and what to do about it.
+#pragma once
+
+#include "driver/link/error.hpp"
+#include "driver/link/port_holder.hpp"
+#include "driver/link/port_list.hpp"
+#include "driver/protocol/result.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <sys/types.h>
+#include <vector>
+
+namespace sweepcast::link {
+
+/// What the system knows of a port that could not be opened.
+struct PortFacts {
+    std::optional<mode_t> mode;       ///< of the device file, if there is one
+    std::string group;                ///< that owns the device file, e.g. "dialout"
+    std::string user;                 ///< as whom we run
+    std::vector<PortHolder> holders;  ///< who has it open
+    std::vector<SerialPort> ports;    ///< the USB ports there are
+    pid_t own_pid{};
+};
+
+/// Asks the system about `path`.
+PortFacts gather_port_facts(const std::string& path);
+
+/// The link error that stands for what open(2), flock(2) or ioctl(2) reported of a port.
+errc classify_open_error(int error);
+
+/// Explains the errno value `error` of opening `path`. Pure.
+Problem explain_open_error(const std::string& path, int error, const PortFacts& facts);
+
+/// Explains that the adapter at `path` runs at `actual` baud when asked for `asked`. Pure.
+Problem explain_baud(const std::string& path, std::uint32_t asked, std::uint32_t actual);
+
+}  // namespace sweepcast::link
