@@ -1,0 +1,120 @@
+// Emulator: a scanner as a state machine. Bytes from the host and time go in, bytes to the host
+// come out.
+#pragma once
+
+#include "driver/protocol/reply.hpp"
+#include "driver/protocol/request_parser.hpp"
+#include "driver/virtual/answers.hpp"
+#include "driver/virtual/beam.hpp"
+#include "driver/virtual/measurement_stream.hpp"
+#include "driver/virtual/motor.hpp"
+#include "driver/virtual/persona.hpp"
+#include "driver/virtual/transmit_line.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace sweepcast::virtual_lidar {
+
+/// What a user would want to see in the log.
+enum class Occurrence : std::uint8_t {
+    motor_on,
+    motor_off,
+    scan_started,  ///< the request was accepted
+    scan_stopped,
+    reset,
+    protection_stop,
+};
+
+struct Event {
+    Occurrence what{};
+    const ScanMode* mode{};  ///< of scan_started and scan_stopped
+};
+
+/// A scanner from the moment it gets power, with the motor running. It behaves as protocol.md 11
+/// and 14 say:
+///
+///     state            | SCAN, EXPRESS_SCAN, FORCE_SCAN | STOP    | RESET   | other requests
+///     idle             | scanning                       | -       | booting | answered
+///     scanning         | scanning anew                  | idle    | booting | idle, answered
+///     protection stop  | -                              | -       | booting | answered
+///     booting          | -                              | -       | -       | -
+///
+/// Motor commands are obeyed in every state and change none: SET_MOTOR_PWM stands in for the modem
+/// line DTR, which switches the motor of an A1 past the scanner's electronics, and which a pseudo
+/// terminal does not have. While the rotation is not stable a scan pauses, unless it was forced.
+///
+/// Times given to its functions never go back. After each call that takes a time, take() what is
+/// due.
+class Emulator {
+public:
+    using OnEvent = std::function<void(const Event&)>;
+
+    /// Switches the scanner on at `now`. `persona` outlives it.
+    Emulator(
+        const Persona& persona,
+        const SerialNumber& serial,
+        Beam beam,
+        Moment now,
+        OnEvent on_event
+    );
+
+    /// Takes bytes that the host sent, received at `now`.
+    void receive(std::span<const std::uint8_t> bytes, Moment now);
+
+    /// Lives on until `now`: measures, boots. If more than 0.3 s have passed since the last call
+    /// (the process was stopped), a running scan goes on from `now` with a restart instead of
+    /// catching up.
+    void advance(Moment now);
+
+    /// Appends to `out` what the line has carried to the host by `now`.
+    void take(Moment now, std::vector<Transmitted>& out) { line_.take(now, out); }
+
+    /// When there will be something to do next; none if only the host can change anything.
+    [[nodiscard]] std::optional<Moment> next_due() const;
+
+    /// A hardware fault: stops the scan and reports `code` until RESET.
+    void enter_protection_stop(std::uint16_t code, Moment now);
+
+    /// Bytes that found no room in the transmit queue, because nobody took them in time.
+    [[nodiscard]] std::uint64_t overrun_bytes() const { return overrun_bytes_; }
+
+private:
+    struct Scan {
+        const ScanMode* mode{};
+        bool forced{};
+        Moment requested;
+        std::optional<MeasurementStream> stream{};  // none: waits for a stable rotation
+    };
+
+    void serve(const protocol::Request& request, Moment now);
+    void serve_idle(const protocol::Request& request, Moment now);
+    void switch_motor(std::span<const std::uint8_t> payload, Moment now);
+    void start_express(std::span<const std::uint8_t> payload, Moment now);
+    void start_scan(const ScanMode& mode, bool forced, Moment now);
+    void stop_scan(Moment now);
+    void reset(Moment now);
+    void finish_boot();
+    bool advance_scan(Moment now);
+    bool begin_stream(Moment now);
+    void send(Payload payload, std::span<const std::uint8_t> bytes, Moment ready);
+
+    const Persona* persona_;
+    SerialNumber serial_;
+    Beam beam_;
+    Moment switched_on_;
+    Moment alive_until_;
+    OnEvent on_event_;
+    Motor motor_;
+    TransmitLine line_;
+    protocol::RequestParser parser_;
+    protocol::Health health_;
+    std::optional<Moment> booted_at_;
+    std::optional<Scan> scan_;
+    std::uint64_t overrun_bytes_{};
+};
+
+}  // namespace sweepcast::virtual_lidar

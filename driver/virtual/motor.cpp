@@ -1,0 +1,76 @@
+#include "driver/virtual/motor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace sweepcast::virtual_lidar {
+
+namespace {
+
+double seconds_between(Moment from, Moment to) {
+    return std::max(0.0, std::chrono::duration<double>(to - from).count());
+}
+
+}  // namespace
+
+Motor::Motor(const MotorTraits& traits, Moment now) : traits_(traits), commanded_(now) {}
+
+bool Motor::switch_to(bool on, Moment now) {
+    if (on == on_) {
+        return false;
+    }
+    const double turns_now = even_turns(now);
+    hz_then_ = rotation_hz(now);
+    turns_then_ = turns_now;
+    commanded_ = now;
+    on_ = on;
+    return true;
+}
+
+double Motor::acceleration() const {
+    const auto ramp = std::chrono::duration<double>(on_ ? traits_.spin_up : traits_.coast_down);
+    return (on_ ? traits_.rotation_hz : -traits_.rotation_hz) / ramp.count();
+}
+
+double Motor::ramp_seconds() const {
+    const double goal_hz = on_ ? traits_.rotation_hz : 0.0;
+    return (goal_hz - hz_then_) / acceleration();
+}
+
+double Motor::rotation_hz(Moment at) const {
+    const double ramp = std::min(seconds_between(commanded_, at), ramp_seconds());
+    return hz_then_ + acceleration() * ramp;
+}
+
+double Motor::even_turns(Moment at) const {
+    const double elapsed = seconds_between(commanded_, at);
+    const double ramp = std::min(elapsed, ramp_seconds());
+    const double even_hz = on_ ? traits_.rotation_hz : 0.0;
+    const double on_ramp = (hz_then_ + 0.5 * acceleration() * ramp) * ramp;
+    return turns_then_ + on_ramp + even_hz * (elapsed - ramp);
+}
+
+double Motor::turns(Moment at) const {
+    // As a function of the angle rather than of time the ripple needs no integration, stops with
+    // the motor and never turns the head back. Its period of 2.7 turns makes each revolution a
+    // little different from the one before.
+    constexpr double ripples_per_turn = 2.0 * std::numbers::pi / 2.7;
+    const double even = even_turns(at);
+    return even + traits_.ripple / ripples_per_turn * std::sin(ripples_per_turn * even);
+}
+
+std::optional<Moment> Motor::stable_from() const {
+    if (!on_) {
+        return std::nullopt;
+    }
+    const std::chrono::duration<double> ramp(ramp_seconds());
+    return commanded_ + std::chrono::ceil<std::chrono::nanoseconds>(ramp);
+}
+
+bool Motor::is_stable(Moment at) const {
+    const auto from = stable_from();
+    return from && at >= *from;
+}
+
+}  // namespace sweepcast::virtual_lidar

@@ -1,0 +1,52 @@
+// Motor: where the head points at any time. A function of the commands given, without steps or
+// drift.
+#pragma once
+
+#include "driver/virtual/persona.hpp"
+
+#include <chrono>
+#include <optional>
+
+namespace sweepcast::virtual_lidar {
+
+/// A moment on the host's monotonic clock, fine enough for single bytes on the line.
+using Moment = std::chrono::time_point<std::chrono::steady_clock, std::chrono::nanoseconds>;
+
+/// Speeds up and slows down evenly, and wanders a little round its speed. Moments given to its
+/// functions are not before the last command.
+class Motor {
+public:
+    /// A motor at rest, pointing to 0 degrees, switched off.
+    Motor(const MotorTraits& traits, Moment now);
+
+    /// Switches it on or off at `now`. Returns false if it was so already.
+    bool switch_to(bool on, Moment now);
+
+    [[nodiscard]] bool is_on() const { return on_; }
+
+    /// Turns made by the time `at` since it was made; the part after the point is where the head
+    /// points.
+    [[nodiscard]] double turns(Moment at) const;
+
+    /// Turns per second at `at`, without the ripple.
+    [[nodiscard]] double rotation_hz(Moment at) const;
+
+    /// When its speed is or was settled after the last command; none if it is off.
+    [[nodiscard]] std::optional<Moment> stable_from() const;
+
+    /// Whether it turns at its speed.
+    [[nodiscard]] bool is_stable(Moment at) const;
+
+private:
+    [[nodiscard]] double acceleration() const;  // turns per second squared, signed
+    [[nodiscard]] double ramp_seconds() const;  // from the last command to an even speed
+    [[nodiscard]] double even_turns(Moment at) const;
+
+    MotorTraits traits_;
+    bool on_{};
+    Moment commanded_;
+    double hz_then_{};     // at the last command
+    double turns_then_{};  // at the last command, without the ripple
+};
+
+}  // namespace sweepcast::virtual_lidar

@@ -1,0 +1,298 @@
+#include "driver/virtual/virtual_lidar.hpp"
+
+#include "driver/async/task_group.hpp"
+#include "driver/virtual/error.hpp"
+
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace sweepcast::virtual_lidar {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+
+namespace {
+
+// While a host waits for measurements it gets them in pieces of this time: finer than any driver
+// can tell from a real adapter, and coarse enough to cost no more than about a percent of a core.
+constexpr auto shortest_step = 1ms;
+
+// Nothing announces that a host has opened the port, so this is looked for.
+constexpr auto host_poll_period = 20ms;
+
+constexpr auto report_period = 1s;
+
+Moment now() {
+    return std::chrono::steady_clock::now();
+}
+
+Problem invalid(std::string cause, std::string hint) {
+    return {errc::invalid_option, std::move(cause), std::move(hint)};
+}
+
+std::optional<Problem> check(const VirtualLidarOptions& options) {
+    constexpr double most_noise_mm = 10'000.0;
+    if (find_persona(options.model) == nullptr) {
+        std::string known;
+        for (const auto& persona : personas()) {
+            known += known.empty() ? "" : ", ";
+            known += persona.key;
+        }
+        return invalid("there is no model \"" + options.model + "\"", "known models: " + known);
+    }
+    if (!options.serial.empty() && !parse_serial(options.serial)) {
+        return invalid(
+            "the serial number \"" + options.serial + "\" is not 32 hex digits",
+            "give 16 bytes as hex digits, e.g. A0E1C2D3B4F5968778695A4B3C2D1E0F"
+        );
+    }
+    // Written so that NaN is refused.
+    if (options.noise_mm && !(*options.noise_mm >= 0.0 && *options.noise_mm <= most_noise_mm)) {
+        return invalid("the noise is not in 0..10000 mm", "give a standard deviation such as 5");
+    }
+    if (!(options.dropout >= 0.0 && options.dropout <= 1.0)) {
+        return invalid("the dropout is not in 0..1", "give a fraction such as 0.05");
+    }
+    return std::nullopt;
+}
+
+SerialNumber serial_of(const VirtualLidarOptions& options) {
+    if (const auto given = parse_serial(options.serial)) {
+        return *given;
+    }
+    // With the link in it, so that several on one machine differ, and each stays itself.
+    return serial_from(options.model + "|" + options.link + "|" + std::to_string(options.seed));
+}
+
+Result<std::shared_ptr<const World>, Problem> world_of(const VirtualLidarOptions& options) {
+    if (options.world.empty()) {
+        return std::make_shared<const World>(World::living_room());
+    }
+    auto loaded = World::load(options.world);
+    if (!loaded) {
+        return std::move(loaded).error();
+    }
+    return std::make_shared<const World>(std::move(*loaded));
+}
+
+}  // namespace
+
+struct VirtualLidar::Parts {
+    std::shared_ptr<spdlog::logger> logger;
+    asio::any_io_executor executor;
+    Pty pty;
+    std::optional<PortLink> link;
+    std::optional<Recording> recording;
+    const Persona* persona;
+    SerialNumber serial;
+    Beam beam;
+};
+
+Result<std::unique_ptr<VirtualLidar>, Problem> VirtualLidar::create(
+    asio::any_io_executor executor,
+    const VirtualLidarOptions& options,
+    std::shared_ptr<spdlog::logger> logger
+) {
+    if (auto problem = check(options)) {
+        return std::move(*problem);
+    }
+    auto world = world_of(options);
+    if (!world) {
+        return std::move(world).error();
+    }
+    auto pty = Pty::open(executor);
+    if (!pty) {
+        return std::move(pty).error();
+    }
+    const auto* const persona = find_persona(options.model);
+    const BeamSettings beam{
+        .noise_mm = options.noise_mm,
+        .dropout = options.dropout,
+        .seed = options.seed};
+    Parts parts{
+        .logger = std::move(logger),
+        .executor = executor,
+        .pty = std::move(*pty),
+        .link = {},
+        .recording = {},
+        .persona = persona,
+        .serial = serial_of(options),
+        .beam = Beam(std::move(*world), persona->beam, beam),
+    };
+    if (!options.recording.empty()) {
+        auto recording = Recording::create(options.recording);
+        if (!recording) {
+            return std::move(recording).error();
+        }
+        parts.recording = std::move(*recording);
+    }
+    if (!options.link.empty()) {
+        auto link = PortLink::create(options.link, parts.pty.port());
+        if (!link) {
+            return std::move(link).error();
+        }
+        parts.link = std::move(*link);
+    }
+    return std::unique_ptr<VirtualLidar>(new VirtualLidar(std::move(parts)));
+}
+
+VirtualLidar::VirtualLidar(Parts&& parts)
+    : logger_(std::move(parts.logger))
+    , executor_(parts.executor)
+    , pty_(std::move(parts.pty))
+    , link_(std::move(parts.link))
+    , recording_(std::move(parts.recording))
+    , persona_(parts.persona)
+    , emulator_(
+          *parts.persona,
+          parts.serial,
+          std::move(parts.beam),
+          now(),
+          [this](const Event& event) { log_event(event); }
+      )
+    , next_step_(executor_)
+    , line_time_(executor_)
+    , stopped_(executor_, std::chrono::steady_clock::time_point::max()) {
+    const auto linked = link_ ? " (link " + link_->path() + ")" : std::string();
+    logger_->info(
+        "{} listening on {}{}, serial {}",
+        persona_->title,
+        port(),
+        linked,
+        protocol::short_serial_text(parts.serial)
+    );
+}
+
+asio::awaitable<void> VirtualLidar::run() {
+    // Cancelled or stopped, it ends the same way: by waiting for what it has spawned.
+    co_await asio::this_coro::throw_if_cancelled(false);
+    async::TaskGroup tasks(executor_, [this](std::exception_ptr failure) {
+        failure_ = std::move(failure);
+        stop();
+    });
+    tasks.spawn(read_host());
+    tasks.spawn(keep_pace());
+    if (!stopping_) {
+        boost::system::error_code ignored;  // how the wait ends makes no difference
+        co_await stopped_.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+    }
+    tasks.cancel();
+    while (!co_await tasks.join(1s)) {
+    }
+    link_.reset();
+    logger_->info("{} stopped", port());
+    if (failure_) {
+        std::rethrow_exception(failure_);
+    }
+}
+
+void VirtualLidar::stop() {
+    stopping_ = true;
+    stopped_.cancel();
+}
+
+asio::awaitable<void> VirtualLidar::read_host() {
+    const auto byte_time = std::chrono::nanoseconds(10s) / persona_->baud;
+    std::array<std::uint8_t, 256> buffer{};
+    while (true) {
+        const auto received = pty_.read_some(buffer);
+        note_host(received.host_present);
+        if (received.bytes > 0) {
+            // The line takes its time in this direction too; this also bounds what a host that
+            // writes without end can cost.
+            line_time_.expires_after(byte_time * static_cast<std::int64_t>(received.bytes));
+            co_await line_time_.async_wait(asio::use_awaitable);
+            const auto moment = now();
+            live_until(moment);
+            emulator_.receive(std::span(buffer).first(received.bytes), moment);
+            next_step_.cancel();  // what is due next may have changed
+        } else if (received.host_present) {
+            co_await pty_.readable();
+        } else {
+            line_time_.expires_after(host_poll_period);
+            co_await line_time_.async_wait(asio::use_awaitable);
+        }
+    }
+}
+
+asio::awaitable<void> VirtualLidar::keep_pace() {
+    while (true) {
+        const auto moment = now();
+        live_until(moment);
+        report_losses(moment);
+        const auto due = emulator_.next_due();
+        next_step_.expires_at(due ? std::max(*due, moment + shortest_step) : Moment::max());
+        boost::system::error_code ignored;  // cancelled: something to do sooner, or the end
+        co_await next_step_.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+    }
+}
+
+void VirtualLidar::note_host(bool present) {
+    if (present == host_present_) {
+        return;
+    }
+    host_present_ = present;
+    logger_->info("{} {}", port(), present ? "opened by a host" : "closed by the host");
+    if (!present) {
+        pty_.clean_up_after_host();
+    }
+}
+
+void VirtualLidar::live_until(Moment moment) {
+    emulator_.advance(moment);
+    emulator_.take(moment, transmitted_);
+    for (const auto& transmitted : transmitted_) {
+        deliver(transmitted);
+    }
+    transmitted_.clear();
+}
+
+// Bytes that nobody takes are gone, as on a UART.
+void VirtualLidar::deliver(const Transmitted& transmitted) {
+    if (!host_present_) {
+        return;
+    }
+    const std::span bytes(transmitted.bytes);
+    const auto written = pty_.write_some(bytes);
+    lost_bytes_ += bytes.size() - written;
+    if (recording_ && transmitted.payload == Payload::measurement &&
+        !recording_->append(bytes.first(written))) {
+        logger_->error("the recording ends here: it cannot be written any more");
+        recording_.reset();
+    }
+}
+
+void VirtualLidar::report_losses(Moment moment) {
+    const auto lost = lost_bytes_ + emulator_.overrun_bytes();
+    if (lost == reported_bytes_ || moment - reported_at_ < report_period) {
+        return;
+    }
+    logger_->warn("{} the host does not read: {} bytes lost", port(), lost - reported_bytes_);
+    reported_bytes_ = lost;
+    reported_at_ = moment;
+}
+
+void VirtualLidar::log_event(const Event& event) {
+    switch (event.what) {
+    case Occurrence::motor_on:
+        return logger_->info("{} motor on", port());
+    case Occurrence::motor_off:
+        return logger_->info("{} motor off", port());
+    case Occurrence::scan_started:
+        return logger_->info("{} scan started: {}", port(), event.mode->name);
+    case Occurrence::scan_stopped:
+        return logger_->info("{} scan stopped: {}", port(), event.mode->name);
+    case Occurrence::reset:
+        return logger_->info("{} reset", port());
+    case Occurrence::protection_stop:
+        return logger_->warn("{} protection stop", port());
+    }
+}
+
+}  // namespace sweepcast::virtual_lidar
