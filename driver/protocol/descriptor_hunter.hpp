@@ -84,6 +84,7 @@ public:
 
 private:
     [[nodiscard]] bool plausible() const;
+    [[nodiscard]] Descriptor descriptor_in_window() const;
     void drop_first();
 
     Expectation expectation_;

@@ -1,0 +1,27 @@
+// The decoder for whatever answer type a descriptor announced.
+#include "driver/protocol/decode.hpp"
+
+#include "driver/protocol/error.hpp"
+
+namespace sweepcast::protocol {
+
+Result<Decoder> Decoder::create(AnswerType type, const DecodeSettings& settings) {
+    switch (type) {
+    case AnswerType::normal:
+        return Decoder{NormalDecoder{settings}};
+    case AnswerType::express:
+        return Decoder{ExpressDecoder{settings}};
+    case AnswerType::hq:
+    case AnswerType::ultra:
+    case AnswerType::dense:
+    case AnswerType::ultra_dense:
+        break;
+    }
+    return make_error_code(errc::unsupported_answer_type);
+}
+
+void Decoder::push(std::span<const std::uint8_t> bytes, const Arrival& arrival, Decoded& out) {
+    std::visit([&](auto& decoder) { decoder.push(bytes, arrival, out); }, state_);
+}
+
+}  // namespace sweepcast::protocol
