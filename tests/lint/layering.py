@@ -39,7 +39,7 @@ def generated_room_of(header, table):
     return next((name for name, pattern in table["generated"].items() if re.fullmatch(pattern, header)), None)
 
 
-def fault_of_ours(header, room, root, table):
+def fault_of_ours(header, room, is_header, root, table):
     """What is wrong with `#include "header"` in `room`; None if nothing is."""
     generated = generated_room_of(header, table)
     if ".." in header or (generated is None and not (root / header).is_file()):
@@ -48,6 +48,8 @@ def fault_of_ours(header, room, root, table):
     allowed = [room, *table["rooms"][room]["rooms"]]
     if not any(is_inside(target, name) for name in allowed):
         return f'{room} must not include "{header}"'
+    if is_header and header in table["sources_only"]["headers"]:
+        return f'"{header}" belongs in a .cpp file, not in a header'
     return None
 
 
@@ -71,15 +73,17 @@ def faults_in(path, root, table):
     room = room_of(relative, table)
     if room is None:
         return [(1, "belongs to no room: add its folder to the table")]
+    is_header = path.suffix == ".hpp"
+    may_show_all = relative in table["sources_only"]["headers"]
     found = []
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         include = INCLUDE.match(line)
         if not include:
             continue
         if include["ours"]:
-            fault = fault_of_ours(include["ours"], room, root, table)
+            fault = fault_of_ours(include["ours"], room, is_header, root, table)
         elif include["theirs"]:
-            fault = fault_of_theirs(include["theirs"], room, path.suffix == ".hpp", root, table)
+            fault = fault_of_theirs(include["theirs"], room, is_header and not may_show_all, root, table)
         else:
             fault = "what it includes cannot be read: name the file"
         if fault:

@@ -16,6 +16,7 @@ CLEAN = {
     "server/frame/frame.hpp": '#include "driver/protocol/sample.hpp"\n',
     "server/frame/encode.cpp": '#include "sweepcast/v1/scan.pb.h"\n#include <zstd.h>\n',
     "server/http/session.cpp": "#include <boost/beast/http.hpp>\n",
+    "server/stream/ws_transport.hpp": "#include <boost/beast/websocket.hpp>\n",
     "tests/driver/protocol/sample_test.cpp": '#include "driver/protocol/sample.hpp"\n#include <gtest/gtest.h>\n',
 }
 
@@ -33,6 +34,7 @@ PLANTED = [
     ("server/hub/hub.cpp", '#include "sweepcast/v1/stream.pb.h"', "server/hub must not include"),
     ("server/api/handlers.cpp", "#include <boost/beast/http.hpp>", "server/api must not include <boost/beast/http.hpp>"),
     ("server/http/session.hpp", "#include <boost/beast/http.hpp>", "belongs in a .cpp file"),
+    ("server/http/session.hpp", '#include "server/stream/ws_transport.hpp"', "belongs in a .cpp file"),
     ("server/gateway/gateway.cpp", "#include <CLI/CLI.hpp>", "(cli11)"),
     ("server/main.cpp", '#include "server/frame/frame.hpp"', "server/main.cpp must not include"),
     ("tests/driver/protocol/x_test.cpp", '#include "server/frame/frame.hpp"', "tests/driver must not include"),

@@ -3,7 +3,7 @@
 
 Usage: tidy.py BUILD_DIR [PATTERN]. BUILD_DIR holds compile_commands.json and the generated headers; PATTERN limits the
 files by a part of their path. What was clean is remembered in BUILD_DIR/tidy, by a hash of the source, of every header of
-ours that it reaches, of its command line, of .clang-tidy and of clang-tidy's version. Exit code 1 if anything is found.
+ours that it reaches, of its command line, of every .clang-tidy above it and of clang-tidy's version. Exit code 1 if anything is found.
 """
 
 import concurrent.futures
@@ -47,7 +47,8 @@ def reached_from(source, build):
 
 def fingerprint(source, command, build, common):
     """What the findings in `source` depend on, as one hash; headers of installed packages are taken as given."""
-    parts = [common, command.encode(), *(path.read_bytes() for path in reached_from(source, build))]
+    settings = [folder / ".clang-tidy" for folder in source.parents if (folder / ".clang-tidy").is_file()]
+    parts = [common, command.encode(), *(path.read_bytes() for path in settings), *(path.read_bytes() for path in reached_from(source, build))]
     return hashlib.sha256(b"\0".join(parts)).hexdigest()
 
 
@@ -73,8 +74,7 @@ def main():
     if not todo:
         sys.exit(f"tidy: no source of driver/ or server/ in {build / 'compile_commands.json'}")
     (build / "tidy").mkdir(exist_ok=True)
-    version = subprocess.run(["clang-tidy", "--version"], capture_output=True, check=True).stdout
-    common = version + (ROOT / ".clang-tidy").read_bytes()
+    common = subprocess.run(["clang-tidy", "--version"], capture_output=True, check=True).stdout
     jobs = int(os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL") or os.cpu_count() or 1)
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         results = list(pool.map(lambda item: check(*item, build, common), todo))
