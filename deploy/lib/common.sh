@@ -49,7 +49,7 @@ missing_packages() {
 
 # as_root COMMAND...: runs it as root, directly or through sudo.
 as_root() {
-    if ((EUID == 0)); then
+    if [[ $(id -u) == 0 ]]; then
         "$@"
     else
         sudo "$@"
@@ -58,7 +58,7 @@ as_root() {
 
 # install_packages PACKAGE...: installs those that are missing; does nothing, and needs nothing, if none is.
 install_packages() {
-    if ! command -v dpkg-query apt-get >/dev/null; then
+    if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
         say "no apt here, so nothing is installed; needed (Debian's names): $*"
         return
     fi
@@ -67,7 +67,7 @@ install_packages() {
     if ((${#missing[@]} == 0)); then
         return
     fi
-    if ((EUID != 0)) && ! command -v sudo >/dev/null; then
+    if [[ $(id -u) != 0 ]] && ! command -v sudo >/dev/null; then
         fail "packages are missing and installing them takes root; this is neither root nor is there sudo" \
             "as root: apt-get install --no-install-recommends ${missing[*]}"
     fi

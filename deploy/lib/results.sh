@@ -1,0 +1,17 @@
+# Totals over several runs of ctest, from the JUnit files that it writes.
+# Sourced by deploy/test.
+# shellcheck shell=bash
+
+passed=0 failed=0 skipped=0
+
+# count_results JUNIT: adds one run's results to the totals. ctest calls a test that could not be started skipped, as it
+# does one that chose not to run; here the first is a failure.
+count_results() {
+    local all ok chosen
+    all=$(grep -c '^[[:space:]]*<testcase ' "$1" || true)
+    ok=$(grep -c '^[[:space:]]*<testcase .*status="run"' "$1" || true)
+    chosen=$(grep -cE '<skipped message="SKIP_|^[[:space:]]*<testcase .*status="disabled"' "$1" || true)
+    passed=$((passed + ok))
+    skipped=$((skipped + chosen))
+    failed=$((failed + all - ok - chosen))
+}

@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""Tests of deploy/lib/results.sh: totals over the JUnit files of ctest."""
+
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+RESULTS = Path(__file__).resolve().parents[2] / "deploy/lib/results.sh"
+
+# As ctest 3.25 writes them.
+PASSED = '<testcase name="a" classname="a" time="0.1" status="run">\n\t\t<system-out></system-out>'
+FAILED = '<testcase name="b" classname="b" time="0.1" status="fail">\n\t\t<failure message=""/>\n\t\t<system-out></system-out>'
+CHOSE_NOT_TO_RUN = '<testcase name="c" classname="c" time="0" status="notrun">\n\t\t<skipped message="SKIP_RETURN_CODE=77"/>'
+MISSING = '<testcase name="d" classname="d" time="0" status="notrun">\n\t\t<skipped message="Unable to find executable"/>'
+NEEDED_WHAT_FAILED = '<testcase name="e" classname="e" time="0" status="notrun">\n\t\t<skipped message="Fixture dependency failed"/>'
+DISABLED = '<testcase name="f" classname="f" time="0" status="disabled">\n\t\t<system-out>Disabled</system-out>'
+# A test whose output looks like results: ctest escapes it.
+SAYS_IT_FAILED = PASSED.replace("<system-out>", '<system-out>&lt;testcase name="x" status="fail"&gt;\nstatus="disabled"\n')
+
+
+class ResultsTest(unittest.TestCase):
+    def totals(self, *runs):
+        """What count_results makes of these runs, each a list of test cases: (passed, failed, skipped)."""
+        with tempfile.TemporaryDirectory() as folder:
+            script = f'set -euo pipefail; source "{RESULTS}"\n'
+            for number, cases in enumerate(runs):
+                file = Path(folder) / f"{number}.xml"
+                body = "".join(f"\t{case}\n\t</testcase>\n" for case in cases)
+                file.write_text(f'<?xml version="1.0"?>\n<testsuite name="x">\n{body}</testsuite>\n', encoding="utf-8")
+                script += f'count_results "{file}"\n'
+            script += "echo $passed $failed $skipped"
+            done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
+        return tuple(int(number) for number in done.stdout.split())
+
+    def test_each_kind_of_result_has_its_column(self):
+        self.assertEqual(self.totals([PASSED, PASSED, FAILED, CHOSE_NOT_TO_RUN, DISABLED]), (2, 1, 2))
+
+    def test_a_test_that_could_not_run_is_a_failure(self):
+        self.assertEqual(self.totals([MISSING, NEEDED_WHAT_FAILED]), (0, 2, 0))
+
+    def test_runs_add_up(self):
+        self.assertEqual(self.totals([PASSED], [PASSED, FAILED], []), (2, 1, 0))
+
+    def test_what_a_test_prints_does_not_count(self):
+        self.assertEqual(self.totals([SAYS_IT_FAILED]), (1, 0, 0))
+
+
+if __name__ == "__main__":
+    unittest.main()
