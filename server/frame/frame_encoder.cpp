@@ -1,0 +1,85 @@
+// Columns -> protobuf -> zstd.
+#include "server/frame/frame_encoder.hpp"
+
+#include "server/frame/printable.hpp"
+#include "server/frame/scan_columns.hpp"
+#include "sweepcast/v1/scan.pb.h"
+#include "sweepcast/v1/stream.pb.h"
+
+#include <zstd.h>
+
+#include <new>
+#include <stdexcept>
+#include <string>
+
+namespace sweepcast::frame {
+
+namespace {
+
+constexpr int zstd_level = 3;
+
+struct FreeContext {
+    void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
+};
+
+void serialize(const v1::Scan& scan, std::string& out) {
+    if (!scan.SerializeToString(&out)) {
+        throw std::logic_error("a scan that protobuf does not serialise");
+    }
+}
+
+}  // namespace
+
+struct FrameEncoder::Workspace {
+    Workspace() : context(ZSTD_createCCtx()) {
+        if (!context) {
+            throw std::bad_alloc();
+        }
+        ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, zstd_level);
+    }
+
+    void compress(std::string& out) {
+        out.resize(ZSTD_compressBound(raw.size()));
+        const std::size_t size =
+            ZSTD_compress2(context.get(), out.data(), out.size(), raw.data(), raw.size());
+        if (ZSTD_isError(size) != 0) {
+            throw std::runtime_error(
+                std::string("zstd: ") + ZSTD_getErrorName(size)
+            );  // out of memory
+        }
+        out.resize(size);
+    }
+
+    std::unique_ptr<ZSTD_CCtx, FreeContext> context;
+    v1::Scan scan;
+    std::string raw;
+    v1::ServerMessage message;
+};
+
+FrameEncoder::FrameEncoder() : workspace_(std::make_unique<Workspace>()) {}
+FrameEncoder::FrameEncoder(FrameEncoder&&) noexcept = default;
+FrameEncoder& FrameEncoder::operator=(FrameEncoder&&) noexcept = default;
+FrameEncoder::~FrameEncoder() = default;
+
+WireMessagePtr
+FrameEncoder::encode(const device::CapturedSweep& captured, Compression compression) {
+    auto& work = *workspace_;
+    to_columns(captured, work.scan);
+    auto& frame = *work.message.mutable_frame();
+    frame.set_lidar(printable(captured.lidar));
+    frame.set_sequence(captured.sequence);
+    frame.set_kind(v1::SWEEP);
+    if (compression == Compression::none) {
+        frame.set_compression(v1::NONE);
+        serialize(work.scan, *frame.mutable_body());
+        frame.set_raw_size(static_cast<std::uint32_t>(frame.body().size()));
+    } else {
+        frame.set_compression(v1::ZSTD);
+        serialize(work.scan, work.raw);
+        frame.set_raw_size(static_cast<std::uint32_t>(work.raw.size()));
+        work.compress(*frame.mutable_body());
+    }
+    return std::make_shared<const WireMessage>(work.message);
+}
+
+}  // namespace sweepcast::frame
