@@ -12,6 +12,12 @@ namespace {
 /// Packets decoded between looks at what is left: bounds the room reserved ahead of a failing
 /// packet.
 constexpr std::size_t longest_run = 128;
+/// So many angles that go on from one another make a jump suspicious.
+constexpr std::uint32_t trusted_streak = 8;
+/// From here on jumps are what is to be expected: two in a row, or more often than every third
+/// sample.
+constexpr std::uint32_t rough = 4;
+constexpr std::uint32_t roughest = 8;
 
 Sample decode_packet(const std::uint8_t* packet, SampleTime time) {
     return {
@@ -50,26 +56,27 @@ std::size_t NormalDecoder::decode_run(const TimedBytes& input, Decoded& out) {
     out.samples.resize(first + most);
     auto* const samples = out.samples.data() + first;
     std::size_t count = 0;
+    auto track = track_;
     for (; count < most; ++count) {
         const auto* packet = bytes.data() + count * normal_packet_size;
-        if (!is_normal_packet(packet)) {
+        if (!is_normal_packet(packet) || !track.take(normal_angle(packet))) {
             break;
         }
         const auto arrival = input.arrival_of((count + 1) * normal_packet_size - 1);
         samples[count] = decode_packet(packet, timing_.last_sample(arrival));
     }
-    for (auto i = count - std::min(count, recent_.angles.size()); i < count; ++i) {
-        recent_.add(samples[i].angle);
-    }
+    track_ = track;
     out.samples.resize(first + count);
     if (count < most) {
-        in_step_ = false;
-        prior_ = recent_.prior();
+        lose_step();
     }
-    if (count == 0) {
-        return realign(input, out);
-    }
-    return count * normal_packet_size;
+    return count > 0 ? count * normal_packet_size : realign(input, out);
+}
+
+void NormalDecoder::lose_step() {
+    in_step_ = false;
+    prior_ = {track_.last, track_.roughness >= rough};
+    track_.streak = 0;
 }
 
 /// Gives up bytes until packets begin.
@@ -78,31 +85,30 @@ std::size_t NormalDecoder::realign(const TimedBytes& input, Decoded& out) {
     if (alignment.verdict == Alignment::Verdict::more) {
         return 0;
     }
-    out.events.push_back({out.samples.size(), DecodeEventKind::bytes_skipped, alignment.offset});
-    // Later windows begin anywhere: what is known of the place of packets held for the first one
+    // Later windows begin anywhere: what is known of the place of packets holds for the first one
     // only.
-    prior_.angles_jump = false;
+    prior_.in_place = false;
     in_step_ = alignment.verdict == Alignment::Verdict::found;
+    if (alignment.offset == 0) {
+        return decode_run(input, out);
+    }
+    out.events.push_back({out.samples.size(), DecodeEventKind::bytes_skipped, alignment.offset});
     return alignment.offset;
 }
 
-void NormalDecoder::RecentAngles::add(AngleQ14 angle) {
-    if (count == angles.size()) {
-        std::shift_left(angles.begin(), angles.end(), 1);
-        --count;
+bool NormalDecoder::AngleTrack::take(AngleQ14 angle) {
+    const bool continues = angle_continues(last, angle);
+    if (!continues && streak >= trusted_streak) {
+        return false;
     }
-    angles[count++] = angle;
-}
-
-AlignmentPrior NormalDecoder::RecentAngles::prior() const {
-    if (count == 0) {
-        return {};
+    streak = continues ? streak + 1 : 0;
+    if (continues) {
+        roughness -= std::min(roughness, 1U);
+    } else {
+        roughness = std::min(roughness + 2, roughest);
     }
-    std::size_t jumps = 0;
-    for (std::size_t i = 1; i < count; ++i) {
-        jumps += angle_continues(angles[i - 1], angles[i]) ? 0U : 1U;
-    }
-    return {angles[count - 1], jumps >= 2};
+    last = angle;
+    return true;
 }
 
 }  // namespace sweepcast::protocol

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 namespace sweepcast::protocol {
 namespace {
@@ -18,10 +19,13 @@ constexpr int in_place_score = 6;
 struct Candidate {
     int score{};
     std::optional<std::size_t> begin;  ///< its first packet since the score was last 0
-    std::optional<AngleQ14> angle;
+    AngleQ14 angle{};
 
     void weigh(const std::uint8_t* packet, std::size_t offset) {
         if (!is_normal_packet(packet)) {
+            if (offset == 0) {
+                return;  // that is why we are here: it says nothing about the packets after it
+            }
             score = std::max(score - failure_cost, 0);
             if (score == 0) {
                 begin.reset();
@@ -29,8 +33,7 @@ struct Candidate {
             return;
         }
         const auto next = normal_angle(packet);
-        const bool continues =
-            angle && angle_continues(*angle, next) && !normal_starts_revolution(packet);
+        const bool continues = angle_continues(angle, next) && !normal_starts_revolution(packet);
         score = std::min(score + (continues ? continuity_gain : 1), highest_score);
         begin = begin.value_or(offset);
         angle = next;
@@ -70,7 +73,7 @@ Alignment find_alignment(std::span<const std::uint8_t> bytes, const AlignmentPri
     for (auto& candidate : candidates) {
         candidate.angle = prior.last_angle;
     }
-    candidates[0].score = prior.angles_jump ? in_place_score + failure_cost : 0;
+    candidates[0].score = prior.in_place ? in_place_score : 0;
 
     bytes = bytes.first(std::min(bytes.size(), alignment_window));
     std::size_t offset = 0;

@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 
 namespace sweepcast::protocol {
@@ -14,13 +13,14 @@ namespace sweepcast::protocol {
 /// The most bytes that are looked at for one decision.
 inline constexpr std::size_t alignment_window = 40 * normal_packet_size;
 
-/// What the stream was like before the damage.
+/// What is known before the bytes are looked at.
 struct AlignmentPrior {
     /// The angle of the last good sample.
-    std::optional<AngleQ14> last_angle;
-    /// Good samples whose angles jump came before. Continuity of angles will not help then, and
-    /// damage in place (the packets still begin where they should) is taken to be the likeliest.
-    bool angles_jump{};
+    AngleQ14 last_angle{};
+    /// Packets are likeliest to begin at the first byte: at the start of a stream, or where angles
+    /// jumped all the time before the damage, so that continuity cannot tell and a damaged packet
+    /// is likelier than lost bytes.
+    bool in_place{};
 };
 
 /// What can be said about the first `bytes` of a stream out of step.

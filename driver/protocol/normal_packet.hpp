@@ -28,10 +28,10 @@ inline constexpr std::size_t normal_packet_size = packet_size(AnswerType::normal
 }
 
 /// Whether a scanner can have turned from one angle to the other between neighbouring samples:
-/// forward, less than 1/32 turn, or back by a rounding error.
+/// forward by less than 1/32 turn, or back by a little jitter.
 [[nodiscard]] constexpr bool angle_continues(AngleQ14 from, AngleQ14 to) {
     const auto step = static_cast<std::int16_t>(static_cast<std::uint16_t>(to.raw - from.raw));
-    return step > -64 && step < 65536 / 32;
+    return step >= -65536 / 256 && step < 65536 / 32;
 }
 
 }  // namespace sweepcast::protocol
