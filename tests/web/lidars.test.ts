@@ -1,0 +1,68 @@
+// The lidars of the gateway and the one that is looked at.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { create, type MessageInitShape } from "@bufbuild/protobuf";
+import { LidarSchema } from "../../web/gen/sweepcast/v1/lidar_pb";
+import { Lidar_State, lidarName, Lidars } from "../../web/src/lidars";
+
+const lidar = (fields: MessageInitShape<typeof LidarSchema>) => create(LidarSchema, fields);
+
+const first = lidar({ number: 1, id: "ttyUSB0", state: Lidar_State.IDLE });
+const second = lidar({ number: 2, id: "ttyUSB1", state: Lidar_State.SCANNING });
+
+function lidars(...list: (typeof first)[]): Lidars {
+  const all = new Lidars();
+  all.replace(list);
+  return all;
+}
+
+test("lidars are listed in the gateway's order", () => {
+  const ids = lidars(second, first)
+    .all()
+    .map((each) => each.id);
+  assert.deepEqual(ids, ["ttyUSB0", "ttyUSB1"]);
+});
+
+test("a lidar that is identified keeps its place and answers to both ids", () => {
+  const all = lidars(first, second);
+  all.put(lidar({ number: 1, id: "8a5b9cf1" }));
+  assert.equal(all.all().length, 2);
+  assert.equal(all.find("ttyUSB0")?.id, "8a5b9cf1");
+  assert.equal(all.find("8a5b9cf1")?.number, 1);
+});
+
+test("a new greeting forgets what was before", () => {
+  const all = lidars(first, second);
+  all.replace([second]);
+  assert.equal(all.find("ttyUSB0"), undefined);
+});
+
+test("the lidar wished for is chosen", () => {
+  assert.equal(lidars(first, second).choose("ttyUSB0", "ttyUSB1")?.number, 1);
+});
+
+test("while the one wished for is not there the one looked at stays", () => {
+  assert.equal(lidars(first, second).choose("gone", "ttyUSB0")?.number, 1);
+});
+
+test("at first one that scans is chosen", () => {
+  assert.equal(lidars(first, second).choose("", "")?.number, 2);
+});
+
+test("if none scans the first is chosen", () => {
+  assert.equal(lidars(first).choose("", "")?.number, 1);
+});
+
+test("where there is none, none is chosen", () => {
+  assert.equal(lidars().choose("x", "y"), undefined);
+});
+
+for (const [name, fields] of [
+  ["/dev/ttyUSB0", { id: "ttyUSB0", url: "/dev/ttyUSB0" }],
+  ["A1M8 · 8a5b9cf1", { id: "8a5b9cf1", url: "/dev/ttyUSB0", device: { model: "A1M8" } }],
+  ["A1M8 · 8a5b9cf1 (virtual)", { id: "8a5b9cf1", isVirtual: true, device: { model: "A1M8" } }],
+] as const) {
+  test(`a lidar is called ${name}`, () => {
+    assert.equal(lidarName(lidar(fields)), name);
+  });
+}

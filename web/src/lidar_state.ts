@@ -1,0 +1,89 @@
+// A lidar's state in words and shape, and what may be done in it. Pure.
+import { Lidar_State } from "./lidars";
+
+export type Tone = "good" | "busy" | "rest" | "bad";
+
+export interface StateWords {
+  word: string;
+  tone: Tone;
+}
+
+/// The state in words, and the tone that gives it its colour and shape.
+export function stateWords(state: Lidar_State): StateWords {
+  switch (state) {
+    case Lidar_State.DISCONNECTED:
+      return { word: "Not connected", tone: "bad" };
+    case Lidar_State.IDENTIFYING:
+      return { word: "Identifying", tone: "busy" };
+    case Lidar_State.IDLE:
+      return { word: "Ready, motor off", tone: "rest" };
+    case Lidar_State.STARTING:
+      return { word: "Starting", tone: "busy" };
+    case Lidar_State.SCANNING:
+      return { word: "Scanning", tone: "good" };
+    case Lidar_State.STOPPING:
+      return { word: "Stopping", tone: "busy" };
+    case Lidar_State.PROTECTION_STOP:
+      return { word: "Protection stop", tone: "bad" };
+    case Lidar_State.FAILED:
+      return { word: "Failed", tone: "bad" };
+    default:
+      return { word: "Unknown", tone: "rest" };
+  }
+}
+
+export type Action = "start" | "stop" | "reset";
+
+export interface Button {
+  label: string;
+  enabled: boolean;
+  /// Under way: the button shows that it works on it.
+  busy: boolean;
+}
+
+export interface Situation {
+  state: Lidar_State;
+  /// The stream is open, so that the state is the present one.
+  connected: boolean;
+  /// Asked for and not yet answered.
+  pending: Action | undefined;
+  /// A mode other than the one in use is picked.
+  otherMode: boolean;
+}
+
+/// What the three buttons offer.
+export function buttonsFor(situation: Situation): Record<Action, Button> {
+  const { state, connected, pending, otherMode } = situation;
+  const free = connected && pending === undefined;
+  const starting = pending === "start" || state === Lidar_State.STARTING;
+  const stopping = pending === "stop" || state === Lidar_State.STOPPING;
+  const restart = state === Lidar_State.SCANNING && otherMode;
+  return {
+    start: {
+      label: starting ? "Starting…" : restart ? "Switch mode" : "Start",
+      enabled: free && (state === Lidar_State.IDLE || restart),
+      busy: connected && starting,
+    },
+    stop: {
+      label: stopping ? "Stopping…" : "Stop",
+      // A start that hangs can be called off.
+      enabled:
+        connected &&
+        (pending === undefined || pending === "start") &&
+        (state === Lidar_State.SCANNING || state === Lidar_State.STARTING),
+      busy: connected && stopping,
+    },
+    reset: {
+      label: pending === "reset" ? "Resetting…" : "Reset",
+      enabled: free && RESETTABLE.has(state),
+      busy: connected && pending === "reset",
+    },
+  };
+}
+
+const RESETTABLE: ReadonlySet<Lidar_State> = new Set([
+  Lidar_State.IDLE,
+  Lidar_State.SCANNING,
+  Lidar_State.PROTECTION_STOP,
+  Lidar_State.FAILED,
+]);

@@ -1,0 +1,54 @@
+// The lidars of the gateway as the stream tells of them, and which of them is being looked at.
+import { Lidar_State, type Lidar } from "../gen/sweepcast/v1/lidar_pb";
+
+export { Lidar_State, type Lidar, type ScanMode } from "../gen/sweepcast/v1/lidar_pb";
+
+/// A lidar keeps its number while its id changes once, when it is identified; it goes on answering to
+/// both ids, here too.
+export class Lidars {
+  private byNumber = new Map<number, Lidar>();
+  private numberOf = new Map<string, number>();
+
+  /// All there are, as told when the stream begins.
+  replace(lidars: readonly Lidar[]): void {
+    this.byNumber.clear();
+    this.numberOf.clear();
+    lidars.forEach((lidar) => this.put(lidar));
+  }
+
+  /// One that is new or has changed.
+  put(lidar: Lidar): void {
+    this.byNumber.set(lidar.number, lidar);
+    this.numberOf.set(lidar.id, lidar.number);
+  }
+
+  /// In the gateway's order.
+  all(): Lidar[] {
+    return [...this.byNumber.values()].sort((a, b) => a.number - b.number);
+  }
+
+  /// By its id, present or former.
+  find(id: string): Lidar | undefined {
+    const number = this.numberOf.get(id);
+    return number === undefined ? undefined : this.byNumber.get(number);
+  }
+
+  /// The one to look at: the one wished for; else the one looked at so far; else the first that scans;
+  /// else the first.
+  choose(wished: string, current: string): Lidar | undefined {
+    const all = this.all();
+    return (
+      this.find(wished) ??
+      this.find(current) ??
+      all.find((lidar) => lidar.state === Lidar_State.SCANNING) ??
+      all[0]
+    );
+  }
+}
+
+/// What to call a lidar in a list: its model and id, or where it is attached while it is not identified.
+export function lidarName(lidar: Lidar): string {
+  if (!lidar.device?.model) return lidar.url || lidar.id;
+  const name = `${lidar.device.model} · ${lidar.id}`;
+  return lidar.isVirtual ? `${name} (virtual)` : name;
+}

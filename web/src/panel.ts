@@ -1,0 +1,73 @@
+// The panel's readouts: who the lidar is, how it is, and what the stream measures.
+import { element, setText, showText } from "./dom";
+import { stateWords, type Tone } from "./lidar_state";
+import { Lidar_State, type Lidar } from "./lidars";
+import type { Sweep } from "./sweep";
+import { decimal, duration, NONE, whole } from "./words";
+
+export interface Measured {
+  sweep: Sweep | undefined;
+  sweepsPerS: number | undefined;
+  missed: number;
+}
+
+// A shape for each tone, so that the state does not rest on colour alone: disc, part of a ring, ring,
+// triangle; in a box of 24 by 24.
+const SHAPES: Record<Tone, string> = {
+  good: "M12 3a9 9 0 1 0 0 18a9 9 0 1 0 0-18z",
+  busy: "M12 2a10 10 0 1 1-10 10h4a6 6 0 1 0 6-6z",
+  rest: "M12 2a10 10 0 1 0 0 20a10 10 0 1 0 0-20zm0 4a6 6 0 1 1 0 12a6 6 0 1 1 0-12z",
+  bad: "M12 2l11 20h-22z",
+};
+
+export class Panel {
+  private readonly state = element("state", HTMLElement);
+  private readonly shape = document.getElementById("state-shape")!;
+  private readonly word = element("state-word", HTMLElement);
+  private readonly since = element("state-since", HTMLElement);
+  private readonly cause = element("cause", HTMLElement);
+  private readonly hint = element("hint", HTMLElement);
+  private readonly virtualNote = element("virtual-note", HTMLElement);
+  private readonly values = {
+    rpm: element("rpm", HTMLElement),
+    points: element("points-per-sweep", HTMLElement),
+    rate: element("sweeps-per-second", HTMLElement),
+    missed: element("missed", HTMLElement),
+    model: element("model", HTMLElement),
+    serial: element("serial", HTMLElement),
+    firmware: element("firmware", HTMLElement),
+    port: element("port", HTMLElement),
+  };
+
+  /// Shows a lidar as the gateway told of it; undefined: there is none.
+  showLidar(lidar: Lidar | undefined): void {
+    const { word, tone } = stateWords(lidar?.state ?? Lidar_State.UNKNOWN);
+    this.state.dataset["tone"] = tone;
+    this.shape.setAttribute("d", SHAPES[tone]);
+    setText(this.word, lidar ? word : "No lidar");
+    showText(this.cause, lidar ? lidar.cause : "The gateway knows of no lidar.");
+    showText(this.hint, lidar ? lidar.hint : "Plug one in: it appears here by itself.");
+    this.virtualNote.hidden = !lidar?.isVirtual;
+    setText(this.values.model, lidar?.device?.model || NONE);
+    setText(this.values.serial, lidar?.device?.serialNumber || NONE);
+    setText(this.values.firmware, lidar?.device?.firmware || NONE);
+    setText(this.values.port, lidar?.url || NONE);
+  }
+
+  /// How long the state has lasted, by this device's clock, which may differ from the gateway's.
+  showSince(lidar: Lidar | undefined, unixS: number): void {
+    const since = lidar?.since ? Number(lidar.since.seconds) : undefined;
+    setText(this.since, since === undefined ? "" : `for ${duration(Math.max(0, unixS - since))}`);
+  }
+
+  /// Shows the stream's figures; those of a sweep are dashes while none comes.
+  showMeasured({ sweep, sweepsPerS, missed }: Measured): void {
+    const live = sweepsPerS !== undefined ? sweep : undefined;
+    const rpm = live && live.periodS > 0 ? 60 / live.periodS : undefined;
+    setText(this.values.rpm, decimal(rpm, 0));
+    const points = live && `${whole(live.x.length)} / ${whole(live.samples)}`;
+    setText(this.values.points, points ?? NONE);
+    setText(this.values.rate, decimal(sweepsPerS, 1));
+    setText(this.values.missed, whole(missed));
+  }
+}

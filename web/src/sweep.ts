@@ -1,0 +1,118 @@
+// A sweep as it is drawn: its echoes as points on the floor, in metres around the lidar.
+import type { Scan } from "./messages";
+import { decodeScan } from "./scan";
+
+export interface Sweep {
+  /// The echoes, in the order they were measured: angle clockwise from the front, distance, quality,
+  /// and the place on the floor: x to the right, y to the front.
+  angleDeg: Float32Array;
+  distanceM: Float32Array;
+  quality: Uint8Array;
+  x: Float32Array;
+  y: Float32Array;
+  /// Samples measured, with an echo or without.
+  samples: number;
+  qualityMeasured: boolean;
+  /// Angle of the last sample in turns, [0, 1): where the lidar was looking when the sweep ended.
+  endTurn: number;
+  /// Duration of the revolution in seconds; 0 if not known.
+  periodS: number;
+  mode: string;
+}
+
+export interface Echo {
+  index: number;
+  angleDeg: number;
+  distanceM: number;
+  quality: number;
+}
+
+/// Decodes a scan and places its echoes. Throws if the scan's columns contradict each other.
+export function sweepOf(scan: Scan): Sweep {
+  const columns = decodeScan(scan);
+  const samples = columns.angle.length;
+  const echoes = columns.distance.reduce((count, distance) => count + (distance > 0 ? 1 : 0), 0);
+  const sweep: Sweep = {
+    angleDeg: new Float32Array(echoes),
+    distanceM: new Float32Array(echoes),
+    quality: new Uint8Array(echoes),
+    x: new Float32Array(echoes),
+    y: new Float32Array(echoes),
+    samples,
+    qualityMeasured: columns.qualityMeasured,
+    endTurn: samples > 0 ? columns.angle[samples - 1]! / columns.angleUnitsPerTurn : 0,
+    periodS: scan.periodUs / 1e6,
+    mode: scan.mode,
+  };
+  for (let k = 0, echo = 0; k < samples; ++k) {
+    const distance = columns.distance[k]! * columns.distanceUnitUm * 1e-6;
+    if (distance === 0) continue;
+    const turn = columns.angle[k]! / columns.angleUnitsPerTurn;
+    sweep.angleDeg[echo] = turn * 360;
+    sweep.distanceM[echo] = distance;
+    sweep.quality[echo] = columns.quality[k]!;
+    sweep.x[echo] = distance * Math.sin(turn * 2 * Math.PI);
+    sweep.y[echo] = distance * Math.cos(turn * 2 * Math.PI);
+    ++echo;
+  }
+  return sweep;
+}
+
+/// The echo at `index`.
+export function echoAt(sweep: Sweep, index: number): Echo {
+  return {
+    index,
+    angleDeg: sweep.angleDeg[index]!,
+    distanceM: sweep.distanceM[index]!,
+    quality: sweep.quality[index]!,
+  };
+}
+
+/// The echo nearest to the lidar; undefined if there is none.
+export function nearestObstacle(sweep: Sweep): Echo | undefined {
+  let best = -1;
+  for (let k = 0; k < sweep.distanceM.length; ++k) {
+    if (best < 0 || sweep.distanceM[k]! < sweep.distanceM[best]!) best = k;
+  }
+  return best < 0 ? undefined : echoAt(sweep, best);
+}
+
+/// The echo nearest to a place on the floor, if one is within `reach` metres of it.
+export function echoNear(sweep: Sweep, x: number, y: number, reach: number): Echo | undefined {
+  let best = -1;
+  let bestSquare = reach * reach;
+  for (let k = 0; k < sweep.x.length; ++k) {
+    const square = (sweep.x[k]! - x) ** 2 + (sweep.y[k]! - y) ** 2;
+    if (square <= bestSquare) {
+      best = k;
+      bestSquare = square;
+    }
+  }
+  return best < 0 ? undefined : echoAt(sweep, best);
+}
+
+const STRAY_RATIO = 1.5;
+
+export interface Extent {
+  /// How far to either side, to the front or back, and in any direction the echoes reach, in metres.
+  x: number;
+  y: number;
+  radius: number;
+}
+
+/// How far the sweep reaches. If its farthest hundredth lies far beyond the rest it is left out: a few
+/// stray echoes through a window must not shrink the room to a dot. Undefined without echoes.
+export function extentOf(sweep: Sweep): Extent | undefined {
+  if (sweep.distanceM.length === 0) return undefined;
+  const sorted = Float32Array.from(sweep.distanceM).sort();
+  const farthest = sorted[sorted.length - 1]!;
+  const room = sorted[Math.floor((sorted.length - 1) * 0.99)]!;
+  const radius = farthest > room * STRAY_RATIO ? room : farthest;
+  const extent = { x: 0, y: 0, radius };
+  for (let k = 0; k < sweep.x.length; ++k) {
+    if (sweep.distanceM[k]! > radius) continue;
+    extent.x = Math.max(extent.x, Math.abs(sweep.x[k]!));
+    extent.y = Math.max(extent.y, Math.abs(sweep.y[k]!));
+  }
+  return extent;
+}

@@ -1,0 +1,61 @@
+// Numbers and moments in words.
+import { stateWords } from "./lidar_state";
+import type { Lidar, ScanMode } from "./lidars";
+import { nearestObstacle, type Echo, type Sweep } from "./sweep";
+
+/// Stands where there is no value.
+export const NONE = "–";
+
+/// "0.82 m": to the centimetre up close, to the decimetre far away.
+export function metres(value: number): string {
+  return `${value.toFixed(value < 20 ? 2 : 1)} m`;
+}
+
+/// A value with so many decimals, or a dash for one that is not known.
+export function decimal(value: number | undefined, decimals: number): string {
+  return value === undefined || !Number.isFinite(value) ? NONE : value.toFixed(decimals);
+}
+
+/// Thousands apart: "4,000".
+export function whole(value: number): string {
+  return Math.round(value).toLocaleString("en");
+}
+
+/// A length of time, roughly: "40 s", "5 min", "3 h", "2 d".
+export function duration(seconds: number): string {
+  if (seconds < 100) return `${Math.floor(seconds)} s`;
+  if (seconds < 100 * 60) return `${Math.floor(seconds / 60)} min`;
+  if (seconds < 48 * 3600) return `${Math.floor(seconds / 3600)} h`;
+  return `${Math.floor(seconds / 86400)} d`;
+}
+
+/// An echo for the readout: angle to a hundredth of a degree, distance to the millimetre.
+export function echoWords(echo: Echo): string {
+  return `${echo.angleDeg.toFixed(2)}°  ${echo.distanceM.toFixed(3)} m  quality ${echo.quality}`;
+}
+
+/// A scan mode for the picker's explanation: "4,000 samples/s, up to 12 m".
+export function modeWords(mode: ScanMode): string {
+  const rate = mode.samplesPerSecond > 0 ? `${whole(mode.samplesPerSecond)} samples/s` : "";
+  const reach = mode.maxDistanceM > 0 ? `up to ${decimal(mode.maxDistanceM, 0)} m` : "";
+  return [rate, reach].filter((part) => part !== "").join(", ");
+}
+
+/// The sweep in a sentence, for who cannot see the drawing.
+export function summary(
+  lidar: Lidar | undefined,
+  sweep: Sweep | undefined,
+  live: boolean,
+  sweepsPerS: number | undefined,
+): string {
+  if (!lidar) return "No lidar to show.";
+  const state = `${stateWords(lidar.state).word}.`;
+  if (!sweep) return `${state} No sweep yet.`;
+  const nearest = nearestObstacle(sweep);
+  const obstacle = nearest
+    ? `Nearest obstacle ${metres(nearest.distanceM)} at ${nearest.angleDeg.toFixed(0)}°.`
+    : "No obstacle in sight.";
+  if (!live) return `${state} In the last sweep: ${obstacle}`;
+  const rate = sweepsPerS === undefined ? "" : ` ${sweepsPerS.toFixed(1)} sweeps/s.`;
+  return `${obstacle}${rate}`;
+}
