@@ -14,7 +14,7 @@ namespace sweepcast::virtual_lidar {
 /// How measurements deviate from the world.
 struct BeamSettings {
     /// Standard deviation of every distance in millimetres, 0 for none; unset: the persona's.
-    std::optional<double> noise_mm;
+    std::optional<double> noise_mm{};
     /// The part of measurements that bring no echo though there is a wall, 0..1.
     double dropout{};
     /// Same seed and same calls, same measurements.

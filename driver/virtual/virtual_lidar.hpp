@@ -25,14 +25,14 @@ namespace sweepcast::virtual_lidar {
 
 /// What a user can choose. Empty texts: not asked for.
 struct VirtualLidarOptions {
-    std::string model{"a1m8"};       ///< key of a persona
-    std::string link;                ///< path of a symbolic link to the port
-    std::string world;               ///< file of points; empty: the built-in living room
-    std::string serial;              ///< 32 hex digits; empty: derived from model, link and seed
-    std::string recording;           ///< file for the measurement bytes sent (see Recording)
-    std::optional<double> noise_mm;  ///< standard deviation of distances; unset: the persona's
-    double dropout{};                ///< part of measurements without an echo, 0..1
-    std::uint64_t seed{1};           ///< of noise and dropouts
+    std::string model{"a1m8"};         ///< key of a persona
+    std::string link{};                ///< path of a symbolic link to the port
+    std::string world{};               ///< file of points; empty: the built-in living room
+    std::string serial{};              ///< 32 hex digits; empty: derived from model, link and seed
+    std::string recording{};           ///< file for the measurement bytes sent (see Recording)
+    std::optional<double> noise_mm{};  ///< standard deviation of distances; unset: the persona's
+    double dropout{};                  ///< part of measurements without an echo, 0..1
+    std::uint64_t seed{1};             ///< of noise and dropouts
 };
 
 /// A virtual lidar. It is used on the thread of its executor only.

@@ -1,0 +1,292 @@
+// VirtualLidar: the whole, talked to through its port by a host of the test's own.
+#include "driver/virtual/virtual_lidar.hpp"
+
+#include "driver/async/task_group.hpp"
+#include "driver/protocol/request.hpp"
+#include "driver/virtual/error.hpp"
+#include "tests/driver/virtual/scratch_folder.hpp"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+
+#include <fcntl.h>
+#include <functional>
+#include <iterator>
+#include <sstream>
+#include <unistd.h>
+
+namespace sweepcast::virtual_lidar {
+namespace {
+
+namespace asio = boost::asio;
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using protocol::Command;
+using testing::HasSubstr;
+using Bytes = std::vector<std::uint8_t>;
+
+const Bytes health_good{0xA5, 0x5A, 3, 0, 0, 0, 0x06, 0, 0, 0};
+
+class VirtualLidarTest : public testing::Test {
+protected:
+    VirtualLidarTest()
+        : tasks_(context_.get_executor(), [this](std::exception_ptr failure) {
+            failure_ = failure;
+            lidar_->stop();
+        }) {}
+
+    void create(const VirtualLidarOptions& options = {}) {
+        auto created = VirtualLidar::create(context_.get_executor(), options, logger_);
+        ASSERT_TRUE(created) << created.error().cause;
+        lidar_ = std::move(*created);
+    }
+
+    /// Runs the lidar and beside it `host`; when that has ended the lidar is stopped.
+    void run_with(std::function<asio::awaitable<void>()> host) {
+        tasks_.spawn(lidar_->run());
+        tasks_.spawn(host_then_stop(std::move(host)));
+        context_.run_for(10s);
+        ASSERT_EQ(tasks_.size(), 0U) << "did not end in time";
+        if (failure_) {
+            std::rethrow_exception(failure_);
+        }
+    }
+
+    asio::posix::stream_descriptor open_port() {
+        const int port = ::open(lidar_->port().c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK);
+        EXPECT_GE(port, 0);
+        return {context_, port};
+    }
+
+    static asio::awaitable<void> write(asio::posix::stream_descriptor& port, Command command) {
+        const auto request = protocol::encode({command, {}});
+        co_await asio::async_write(port, asio::buffer(request), asio::use_awaitable);
+    }
+
+    static asio::awaitable<Bytes> read(asio::posix::stream_descriptor& port, std::size_t size) {
+        Bytes bytes(size);
+        co_await asio::async_read(port, asio::buffer(bytes), asio::use_awaitable);
+        co_return bytes;
+    }
+
+    /// Waits, with the ceiling of run_with, until the log tells of something.
+    asio::awaitable<void> logged(std::string text) {
+        asio::steady_timer timer(context_);
+        while (log_.str().find(text) == std::string::npos) {
+            timer.expires_after(5ms);
+            co_await timer.async_wait(asio::use_awaitable);
+        }
+    }
+
+    asio::io_context context_;
+    std::ostringstream log_;
+    std::shared_ptr<spdlog::logger> logger_ = std::make_shared<spdlog::logger>(
+        "test",
+        std::make_shared<spdlog::sinks::ostream_sink_st>(log_)
+    );
+    ScratchFolder folder_;
+    std::unique_ptr<VirtualLidar> lidar_;
+    async::TaskGroup tasks_;
+    std::exception_ptr failure_;
+
+private:
+    asio::awaitable<void> host_then_stop(std::function<asio::awaitable<void>()> host) {
+        co_await host();
+        lidar_->stop();
+    }
+};
+
+TEST_F(VirtualLidarTest, AnswersOnItsPort) {
+    create();
+    run_with([this]() -> asio::awaitable<void> {
+        auto port = open_port();
+        co_await write(port, Command::get_health);
+        EXPECT_EQ(co_await read(port, health_good.size()), health_good);
+    });
+}
+
+TEST_F(VirtualLidarTest, AnswersARequestThatWasSentBeforeItRan) {
+    create();
+    auto port = open_port();
+    const auto request = protocol::encode({Command::get_health, {}});
+    ASSERT_EQ(::write(port.native_handle(), request.data(), request.size()), 2);
+    run_with([&]() -> asio::awaitable<void> {
+        EXPECT_EQ(co_await read(port, health_good.size()), health_good);
+    });
+}
+
+TEST_F(VirtualLidarTest, ServesOneHostAfterTheOther) {
+    create();
+    run_with([this]() -> asio::awaitable<void> {
+        for (int i = 0; i < 3; ++i) {
+            auto port = open_port();
+            co_await write(port, Command::get_health);
+            EXPECT_EQ(co_await read(port, health_good.size()), health_good);
+            port.close();
+            log_.str("");
+            co_await logged("closed by the host");
+        }
+    });
+}
+
+TEST_F(VirtualLidarTest, LeavesNothingOfAScanForTheNextHost) {
+    create();
+    run_with([this]() -> asio::awaitable<void> {
+        auto first = open_port();
+        co_await write(first, Command::force_scan);
+        co_await read(first, 500);
+        first.close();  // without STOP, as after a crash
+        co_await logged("closed by the host");
+        auto second = open_port();
+        std::array<std::uint8_t, 100> stale{};
+        EXPECT_EQ(::read(second.native_handle(), stale.data(), stale.size()), -1);
+        EXPECT_EQ(errno, EAGAIN);
+    });
+}
+
+TEST_F(VirtualLidarTest, GoesOnScanningForAHostThatComesBack) {
+    create();
+    run_with([this]() -> asio::awaitable<void> {
+        auto first = open_port();
+        co_await write(first, Command::force_scan);
+        co_await read(first, 500);
+        first.close();
+        co_await logged("closed by the host");
+        auto second = open_port();
+        EXPECT_EQ((co_await read(second, 100)).size(), 100U);
+    });
+}
+
+TEST_F(VirtualLidarTest, RecordsTheMeasurementBytesThatWereSent) {
+    const auto recording = folder_.path("recording");
+    create({.recording = recording});
+    Bytes received;
+    run_with([&]() -> asio::awaitable<void> {
+        auto port = open_port();
+        co_await write(port, Command::force_scan);
+        co_await read(port, 7);
+        received = co_await read(port, 1000);
+    });
+    std::ifstream file(recording, std::ios::binary);
+    Bytes recorded{std::istreambuf_iterator<char>(file), {}};
+    ASSERT_GE(recorded.size(), received.size());
+    recorded.resize(received.size());
+    EXPECT_EQ(recorded, received);
+}
+
+TEST_F(VirtualLidarTest, LosesWhatAHostDoesNotReadAndSaysSo) {
+    create();
+    run_with([this]() -> asio::awaitable<void> {
+        auto port = open_port();
+        co_await write(port, Command::force_scan);
+        co_await logged("bytes lost");
+    });
+    EXPECT_THAT(log_.str(), HasSubstr("the host does not read"));
+}
+
+TEST_F(VirtualLidarTest, LinksItsPortWhileItRuns) {
+    const auto link = folder_.path("lidar");
+    create({.link = link});
+    EXPECT_EQ(fs::read_symlink(link), lidar_->port());
+    run_with([]() -> asio::awaitable<void> { co_return; });
+    EXPECT_FALSE(fs::exists(fs::symlink_status(link)));
+}
+
+TEST_F(VirtualLidarTest, TellsInTheLogWhatAUserWantsToKnow) {
+    const auto link = folder_.path("lidar");
+    create({.link = link});
+    run_with([this]() -> asio::awaitable<void> {
+        auto port = open_port();
+        const auto motor_off = protocol::encode(protocol::set_motor_pwm_request(0));
+        co_await asio::async_write(port, asio::buffer(motor_off), asio::use_awaitable);
+        co_await logged("motor off");
+        co_await write(port, Command::scan);
+        co_await logged("scan started: Standard");
+        co_await write(port, Command::reset);
+        co_await logged("reset");
+    });
+    EXPECT_THAT(log_.str(), HasSubstr("listening on " + lidar_->port() + " (link " + link + ")"));
+    EXPECT_THAT(log_.str(), HasSubstr("scan stopped: Standard"));
+}
+
+TEST_F(VirtualLidarTest, StopsAlsoBeforeItHasBegun) {
+    create();
+    lidar_->stop();
+    tasks_.spawn(lidar_->run());
+    context_.run_for(10s);
+    EXPECT_EQ(tasks_.size(), 0U);
+}
+
+TEST_F(VirtualLidarTest, EndsTidilyWhenCancelled) {
+    const auto link = folder_.path("lidar");
+    create({.link = link});
+    tasks_.spawn(lidar_->run());
+    asio::post(context_, [this] { tasks_.cancel(); });
+    context_.run_for(10s);
+    EXPECT_EQ(tasks_.size(), 0U);
+    EXPECT_FALSE(fs::exists(fs::symlink_status(link)));
+    EXPECT_FALSE(failure_);
+}
+
+TEST_F(VirtualLidarTest, TakesTheSerialNumberGiven) {
+    create({.serial = "000102030405060708090A0B0C0D0E0F"});
+    run_with([this]() -> asio::awaitable<void> {
+        auto port = open_port();
+        co_await write(port, Command::get_info);
+        const auto answer = co_await read(port, 27);
+        for (std::size_t i = 0; i < 16; ++i) {
+            EXPECT_EQ(answer[11 + i], i);
+        }
+    });
+}
+
+struct BadOption {
+    const char* name;
+    VirtualLidarOptions options;
+    errc code;
+};
+void PrintTo(const BadOption& option, std::ostream* out) {
+    *out << option.name;
+}
+
+class BadOptions : public testing::TestWithParam<BadOption> {};
+
+TEST_P(BadOptions, AreRefusedWithACauseAndAHint) {
+    asio::io_context context;
+    std::ostringstream log;
+    const auto logger = std::make_shared<spdlog::logger>(
+        "test",
+        std::make_shared<spdlog::sinks::ostream_sink_st>(log)
+    );
+    const auto created = VirtualLidar::create(context.get_executor(), GetParam().options, logger);
+    ASSERT_FALSE(created);
+    EXPECT_EQ(created.error().code, GetParam().code);
+    EXPECT_FALSE(created.error().cause.empty());
+    EXPECT_FALSE(created.error().hint.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Options,
+    BadOptions,
+    testing::Values(
+        BadOption{"model", {.model = "b2"}, errc::invalid_option},
+        BadOption{"serial", {.serial = "12"}, errc::invalid_option},
+        BadOption{"negative_noise", {.noise_mm = -1.0}, errc::invalid_option},
+        BadOption{"noise_nan", {.noise_mm = std::nan("")}, errc::invalid_option},
+        BadOption{"dropout", {.dropout = 1.01}, errc::invalid_option},
+        BadOption{"dropout_nan", {.dropout = std::nan("")}, errc::invalid_option},
+        BadOption{"world", {.world = "no/such/file.csv"}, errc::world_unreadable},
+        BadOption{"link", {.link = "no/such/folder/link"}, errc::link_unavailable},
+        BadOption{"recording", {.recording = "no/such/folder/file"}, errc::recording_unavailable}
+    ),
+    [](const auto& test) { return std::string(test.param.name); }
+);
+
+}  // namespace
+}  // namespace sweepcast::virtual_lidar
