@@ -43,7 +43,9 @@ void TaskGroup::spawn(asio::awaitable<void> task) {
         }
     };
     asio::co_spawn(
-        executor_, std::move(task), asio::bind_cancellation_slot(entry->slot(), std::move(on_exit))
+        executor_,
+        std::move(task),
+        asio::bind_cancellation_slot(entry->slot(), std::move(on_exit))
     );
 }
 
@@ -58,7 +60,8 @@ void TaskGroup::cancel() {
 asio::awaitable<bool> TaskGroup::join(std::chrono::steady_clock::duration limit) {
     if (!running_.empty()) {
         emptied_.expires_after(limit);
-        boost::system::error_code ignored;  // cancelled when the last one ends, success when the limit passes
+        boost::system::error_code
+            ignored;  // cancelled when the last one ends, success when the limit passes
         co_await emptied_.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
         emptied_.expires_at(std::chrono::steady_clock::time_point::max());
     }

@@ -1,4 +1,5 @@
-// TaskGroup: the owner of coroutines. Nothing is spawned without one, and nothing outlives it unseen.
+// TaskGroup: the owner of coroutines. Nothing is spawned without one, and nothing outlives it
+// unseen.
 #pragma once
 
 #include <boost/asio/any_io_executor.hpp>
@@ -26,7 +27,8 @@ public:
     /// Starts `task` on the group's executor.
     void spawn(boost::asio::awaitable<void> task);
 
-    /// Cancels every running coroutine (terminal cancellation). Those spawned later are not affected.
+    /// Cancels every running coroutine (terminal cancellation). Those spawned later are not
+    /// affected.
     void cancel();
 
     /// Waits until no coroutine is left, at most `limit`. Returns true if none is left.

@@ -1,4 +1,5 @@
-// CapturedSweep: a sweep together with where, how and when it was taken. What the driver hands to its user.
+// CapturedSweep: a sweep together with where, how and when it was taken. What the driver hands to
+// its user.
 #pragma once
 
 #include "driver/protocol/answer_type.hpp"

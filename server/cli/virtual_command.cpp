@@ -2,16 +2,19 @@
 
 #include "driver/async/task_group.hpp"
 #include "driver/virtual/virtual_lidar.hpp"
+#include "server/cli/command.hpp"
+#include "server/log/log.hpp"
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <csignal>
+#include <cstdio>
 #include <exception>
-#include <iostream>
 #include <memory>
 #include <utility>
 
@@ -44,15 +47,6 @@ Examples:
   sweepcast virtual --link /tmp/lidar --noise 5 --dropout 0.02
   sweepcast virtual --world room.csv --noise 0 --seed 7)";
 
-std::shared_ptr<spdlog::logger> make_logger() {
-    auto logger = std::make_shared<spdlog::logger>(
-        "virtual",
-        std::make_shared<spdlog::sinks::stderr_sink_mt>()
-    );
-    logger->set_pattern("%Y-%m-%d %H:%M:%S.%e %-5l [%n] %v");
-    return logger;
-}
-
 // Runs the lidar to its end, and lets nothing else keep the process alive after it.
 asio::awaitable<void> play(VirtualLidar& lidar, asio::signal_set& signals) {
     co_await lidar.run();
@@ -60,17 +54,15 @@ asio::awaitable<void> play(VirtualLidar& lidar, asio::signal_set& signals) {
 }
 
 int run(const VirtualLidarOptions& options) {
-    const auto logger = make_logger();
     asio::io_context context(1);
     // Before the port is there: a signal that comes early must not leave a link behind.
     asio::signal_set signals(context, SIGINT, SIGTERM);
-    auto lidar = VirtualLidar::create(context.get_executor(), options, logger);
+    auto lidar = VirtualLidar::create(context.get_executor(), options, log::make_logger("virtual"));
     if (!lidar) {
-        const auto& problem = lidar.error();
-        std::cerr << "sweepcast virtual: " << problem.cause << "\n  " << problem.hint << '\n';
-        return 1;
+        return report(lidar.error());
     }
-    std::cout << (*lidar)->port() << std::endl;
+    fmt::print("{}\n", (*lidar)->port());
+    std::fflush(stdout);  // whoever reads it from a pipe waits for it
 
     std::exception_ptr failure;
     async::TaskGroup tasks(context.get_executor(), [&](std::exception_ptr thrown) {

@@ -16,7 +16,12 @@ namespace sweepcast::frame {
 
 namespace {
 
-constexpr int zstd_level = 3;
+/// The last level at which a byte saved costs little. Measured on sweeps of 3,200 samples (9,678
+/// bytes raw): level 1 gives 3,430 bytes in 36 us, 3 gives 3,426 in 57, 4 gives 3,368 in 94, 6
+/// gives 3,379 in 306, 9 gives 3,372 in 508; on turns of real rooms (719 samples) 1,042, 1,030,
+/// 1,008, 1,003 and 1,000 bytes in 15 to 65 us. A sweep is compressed once, and its bytes go to
+/// every client.
+constexpr int zstd_level = 4;
 
 struct FreeContext {
     void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }

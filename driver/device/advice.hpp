@@ -1,0 +1,18 @@
+// Advice: turns the errors of a lidar's life into what an operator should read.
+#pragma once
+
+#include "driver/device/scan_mode.hpp"
+#include "driver/protocol/result.hpp"
+
+#include <string_view>
+#include <vector>
+
+namespace sweepcast::device {
+
+/// The cause in words and the next step, for any error of the device and of its link.
+[[nodiscard]] Problem advice(error_code code);
+
+/// There is no scan mode called `name`; names those there are.
+[[nodiscard]] Problem unknown_mode(std::string_view name, const std::vector<ScanMode>& modes);
+
+}  // namespace sweepcast::device

@@ -1,0 +1,404 @@
+#include "driver/device/device.hpp"
+
+#include "driver/device/advice.hpp"
+#include "driver/device/error.hpp"
+#include "driver/link/error.hpp"
+#include "driver/protocol/decode.hpp"
+#include "driver/protocol/sweep_assembler.hpp"
+
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
+
+#include <utility>
+
+namespace sweepcast::device {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+constexpr auto descriptor_limit = 2000ms;
+/// The device holds samples back until its speed is stable, one to two seconds (protocol.md 13.17).
+constexpr auto spin_up_limit = 6s;
+/// Samples come every few milliseconds once they do.
+constexpr auto silence_limit = 1000ms;
+/// Between switching the motor and the next request, as the vendor's SDK does (protocol.md 4.3).
+constexpr auto motor_pause = 10ms;
+constexpr auto boot_limit = 15s;
+
+constexpr auto start_limit = 10s;
+constexpr auto stop_limit = 3s;
+constexpr auto reset_limit = boot_limit + start_limit;
+
+constexpr std::uint16_t usual_pwm = 660;
+
+/// Closes a borrowed pointer's life with the scope that owns the object.
+class Lend {
+public:
+    Lend(link::Link*& slot, link::Link& link) : slot_(slot) { slot_ = &link; }
+    ~Lend() { slot_ = nullptr; }
+    Lend(const Lend&) = delete;
+    Lend& operator=(const Lend&) = delete;
+
+private:
+    link::Link*& slot_;
+};
+
+}  // namespace
+
+Device::Device(
+    asio::any_io_executor executor,
+    OpenLink open_link,
+    DeviceOptions options,
+    DeviceObserver& observer,
+    std::shared_ptr<spdlog::logger> log
+)
+    : open_link_(std::move(open_link))
+    , options_(std::move(options))
+    , observer_(observer)
+    , log_(std::move(log))
+    , commanded_(executor)
+    , changed_(executor) {
+    wanted_.scanning = options_.scan_at_once;
+    wanted_.mode = options_.mode;
+    state_.since = std::chrono::system_clock::now();
+}
+
+asio::awaitable<void> Device::run() {
+    while (!wanted_.shutdown) {
+        const auto problem = co_await live();
+        wanted_.reset = false;  // the next attempt begins from scratch anyway
+        if (wanted_.shutdown) {
+            break;
+        }
+        log_->warn(
+            "{}; trying again in {} ms. {}",
+            problem.cause,
+            options_.retry_delay.count(),
+            problem.hint
+        );
+        set_phase(Phase::failed, problem);
+        co_await commanded_.wait_until(Clock::now() + options_.retry_delay);
+    }
+    set_phase(Phase::disconnected);
+}
+
+void Device::shut_down() {
+    wanted_.shutdown = true;
+    poke();
+}
+
+asio::awaitable<Result<void, Problem>> Device::start(std::string mode) {
+    if (!mode.empty() && !state_.modes.empty() && find_mode(state_.modes, mode) == nullptr) {
+        co_return unknown_mode(mode, state_.modes);
+    }
+    const bool other_mode = !mode.empty() && mode != wanted_.mode;
+    if (other_mode) {
+        wanted_.mode = std::move(mode);
+    }
+    if (!std::exchange(wanted_.scanning, true) || other_mode) {
+        ++wanted_.command;
+    }
+    co_return co_await settle(
+        [this] {
+            const auto* mode_wanted = wanted_mode();
+            return state_.phase == Phase::scanning && mode_wanted != nullptr &&
+                   mode_wanted->name == state_.mode;
+        },
+        start_limit
+    );
+}
+
+asio::awaitable<Result<void, Problem>> Device::stop() {
+    if (std::exchange(wanted_.scanning, false)) {
+        ++wanted_.command;
+    }
+    co_return co_await settle(
+        [this] {
+            return state_.phase == Phase::idle || state_.phase == Phase::failed ||
+                   state_.phase == Phase::protection_stop || state_.phase == Phase::disconnected;
+        },
+        stop_limit
+    );
+}
+
+asio::awaitable<Result<void, Problem>> Device::reset() {
+    if (!std::exchange(wanted_.reset, true)) {
+        ++wanted_.command;
+    }
+    co_return co_await settle([this] { return !wanted_.reset && settled(); }, reset_limit);
+}
+
+/// Waits until a command has taken effect, or cannot any more.
+asio::awaitable<Result<void, Problem>>
+Device::settle(std::function<bool()> reached, std::chrono::milliseconds limit) {
+    const auto command = wanted_.command;
+    const auto version = state_version_;
+    const auto deadline = Clock::now() + limit;
+    if (!reached()) {
+        poke();
+    }
+    while (!reached()) {
+        if (wanted_.shutdown) {
+            co_return advice(errc::shutting_down);
+        }
+        if (wanted_.command != command) {
+            co_return advice(errc::superseded);
+        }
+        const bool failed = state_.phase == Phase::failed || state_.phase == Phase::protection_stop;
+        if (failed && state_version_ != version) {
+            co_return Problem{make_error_code(errc::not_ready), state_.cause, state_.hint};
+        }
+        if (!co_await changed_.wait_until(deadline)) {
+            co_return advice(errc::not_ready);
+        }
+    }
+    co_return Result<void, Problem>{};
+}
+
+/// One connection, from opening the port to losing it. Returns what ended it.
+asio::awaitable<Problem> Device::live() {
+    set_phase(Phase::identifying);
+    auto opened = open_link_();
+    if (!opened) {
+        co_return opened.error();
+    }
+    const auto link = std::move(*opened);
+    const Lend lend(link_, *link);
+    Conversation talk(*link);
+
+    auto identity = co_await identify(talk);
+    while (!identity && identity.error() == link::errc::interrupted && !wanted_.shutdown) {
+        identity = co_await identify(talk);
+    }
+    if (!identity) {
+        co_return advice(identity.error());
+    }
+    adopt(std::move(*identity));
+
+    for (;;) {
+        const auto step = co_await next_step(talk);
+        if (!step && step.error() != link::errc::interrupted) {
+            co_return advice(step.error());
+        }
+        if (wanted_.shutdown) {
+            (void)co_await set_motor(talk, false);  // the line may be gone: nothing more to do then
+            co_return Problem{};
+        }
+    }
+}
+
+asio::awaitable<Result<void>> Device::next_step(Conversation& talk) {
+    if (wanted_.reset) {
+        co_return co_await reboot(talk);
+    }
+    if (state_.health && state_.health->status == protocol::HealthStatus::error) {
+        co_return co_await idle(talk, Phase::protection_stop);
+    }
+    if (wanted_.scanning) {
+        co_return co_await scan(talk);
+    }
+    co_return co_await idle(talk, Phase::idle);
+}
+
+/// Motor off; waits for a command, and notices when the line breaks.
+asio::awaitable<Result<void>> Device::idle(Conversation& talk, Phase phase) {
+    if (auto off = co_await set_motor(talk, false); !off) {
+        co_return off;
+    }
+    set_phase(phase, phase == Phase::protection_stop ? advice(errc::protection_stop) : Problem{});
+    for (;;) {
+        // No deadline: an idle lidar says nothing, for as long as nobody wants anything of it.
+        const auto bytes = co_await talk.read(Clock::time_point::max());
+        if (!bytes) {
+            co_return bytes.error();
+        }
+    }
+}
+
+asio::awaitable<Result<void>> Device::scan(Conversation& talk) {
+    const auto* mode = wanted_mode();
+    if (mode == nullptr) {
+        co_return make_error_code(errc::unknown_mode);
+    }
+    state_.mode = mode->name;
+    set_phase(Phase::starting);
+    if (auto on = co_await set_motor(talk, true); !on) {
+        co_return on;
+    }
+    const auto descriptor = co_await talk.open_stream(scan_request(*mode), descriptor_limit);
+    const auto ended = descriptor ? co_await deliver_sweeps(
+                                        talk,
+                                        static_cast<protocol::AnswerType>(descriptor->type),
+                                        *mode
+                                    )
+                                  : Result<void>(descriptor.error());
+
+    const bool line_is_up =
+        ended.error() == link::errc::interrupted || ended.error() == link::errc::timed_out;
+    if (!line_is_up) {
+        co_return ended;
+    }
+    set_phase(Phase::stopping);
+    if (auto silent = co_await talk.silence();
+        !silent && silent.error() != link::errc::interrupted) {
+        co_return silent;
+    }
+    if (!wanted_.scanning || wanted_.shutdown) {
+        if (auto off = co_await set_motor(talk, false); !off) {
+            co_return off;
+        }
+    }
+    if (ended.error() == link::errc::timed_out) {
+        co_return make_error_code(descriptor ? errc::stream_silent : errc::no_answer);
+    }
+    co_return ended;
+}
+
+/// Reads, decodes and gives out sweeps until something ends it; never returns success.
+asio::awaitable<Result<void>>
+Device::deliver_sweeps(Conversation& talk, protocol::AnswerType type, const ScanMode& mode) {
+    auto decoder = protocol::Decoder::create(type, {mode.sample_duration, link_->baud(), false});
+    if (!decoder) {
+        co_return decoder.error();
+    }
+    const std::chrono::nanoseconds per_byte(10'000'000'000LL / std::max(link_->baud(), 1U));
+    protocol::SweepAssembler assembler;
+    protocol::Decoded decoded;
+    std::vector<protocol::Sweep> finished;
+    auto deadline = Clock::now() + spin_up_limit;
+    for (;;) {
+        const auto bytes = co_await talk.read(deadline);
+        if (!bytes) {
+            co_return bytes.error();
+        }
+        const auto now = Clock::now();
+        decoded.clear();
+        decoder->push(
+            *bytes,
+            {std::chrono::time_point_cast<std::chrono::microseconds>(now), per_byte},
+            decoded
+        );
+        if (!decoded.samples.empty()) {
+            deadline = now + silence_limit;
+            if (state_.phase != Phase::scanning) {
+                set_phase(Phase::scanning);
+            }
+        }
+        finished.clear();
+        assembler.push(decoded, finished);
+        for (auto& sweep : finished) {
+            publish(std::move(sweep), type, mode);
+        }
+    }
+}
+
+/// RESET, then asks until the lidar has booted (protocol.md 11.2: poll, do not sleep blindly).
+asio::awaitable<Result<void>> Device::reboot(Conversation& talk) {
+    log_->info("resetting the lidar");
+    set_phase(Phase::identifying, {{}, "resetting", ""});
+    if (auto sent = co_await talk.send({protocol::Command::reset, {}}); !sent) {
+        co_return sent;
+    }
+    const auto deadline = Clock::now() + boot_limit;
+    for (;;) {
+        auto identity = co_await identify(talk);
+        if (identity) {
+            wanted_.reset = false;
+            adopt(std::move(*identity));
+            co_return Result<void>{};
+        }
+        const bool just_late =
+            identity.error() == errc::no_answer || identity.error() == link::errc::interrupted;
+        if (!just_late || wanted_.shutdown || Clock::now() >= deadline) {
+            co_return identity.error();
+        }
+    }
+}
+
+/// An A1's motor hangs on the adapter's DTR line, and runs while that is released (protocol.md 5).
+/// Where the line has no DTR (a bridge, a pseudo terminal) the PWM request is tried: who cannot
+/// obey it ignores it.
+asio::awaitable<Result<void>> Device::set_motor(Conversation& talk, bool on) {
+    auto switched = link_->set_dtr(!on);
+    if (!switched && switched.error() == link::errc::no_modem_lines) {
+        switched = co_await talk.send(protocol::set_motor_pwm_request(on ? usual_pwm : 0));
+    }
+    if (switched) {
+        asio::steady_timer pause(co_await asio::this_coro::executor, motor_pause);
+        co_await pause.async_wait(asio::use_awaitable);
+    }
+    co_return switched;
+}
+
+void Device::adopt(Identity identity) {
+    log_->info(
+        "{} serial {} firmware {}.{:02} hardware {}",
+        protocol::model_name(identity.info.model),
+        protocol::serial_text(identity.info.serial),
+        identity.info.firmware_major,
+        identity.info.firmware_minor,
+        identity.info.hardware
+    );
+    state_.info = identity.info;
+    state_.health = identity.health;
+    state_.modes = std::move(identity.modes);
+    if (find_mode(state_.modes, wanted_.mode) == nullptr) {
+        if (!wanted_.mode.empty()) {
+            log_->warn("{}", unknown_mode(wanted_.mode, state_.modes).cause);
+        }
+        wanted_.mode.clear();
+    }
+    if (const auto* mode = wanted_mode()) {
+        state_.mode = mode->name;
+    }
+}
+
+void Device::publish(protocol::Sweep sweep, protocol::AnswerType type, const ScanMode& mode) {
+    const std::chrono::nanoseconds unix_now = std::chrono::system_clock::now().time_since_epoch();
+    const std::chrono::nanoseconds monotonic_now = Clock::now().time_since_epoch();
+    CapturedSweep captured;
+    captured.sweep = std::move(sweep);
+    captured.mode = mode.name;
+    captured.answer_type = type;
+    captured.sample_duration = mode.sample_duration;
+    captured.monotonic_to_unix = unix_now - monotonic_now;
+    captured.sequence = ++sequence_;
+    observer_.on_sweep(std::move(captured));
+}
+
+void Device::set_phase(Phase phase, const Problem& why) {
+    if (state_.phase != phase) {
+        log_->info("{}", name(phase));
+    }
+    state_.phase = phase;
+    state_.cause = why.cause;
+    state_.hint = why.hint;
+    state_.since = std::chrono::system_clock::now();
+    ++state_version_;
+    observer_.on_state(state_);
+    changed_.notify();
+}
+
+/// Makes run() look at what is wanted.
+void Device::poke() {
+    if (link_ != nullptr) {
+        link_->interrupt();
+    }
+    commanded_.notify();
+}
+
+const ScanMode* Device::wanted_mode() const {
+    return wanted_.mode.empty() ? fastest_mode(state_.modes)
+                                : find_mode(state_.modes, wanted_.mode);
+}
+
+/// In the phase that is wanted, with nothing left to do.
+bool Device::settled() const {
+    return state_.phase == (wanted_.scanning ? Phase::scanning : Phase::idle);
+}
+
+}  // namespace sweepcast::device

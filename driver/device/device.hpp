@@ -1,0 +1,121 @@
+// Device: one lidar's life. Opens its port, identifies it, scans and stops as wanted, and starts
+// again when something breaks.
+#pragma once
+
+#include "driver/async/notifier.hpp"
+#include "driver/device/captured_sweep.hpp"
+#include "driver/device/conversation.hpp"
+#include "driver/device/device_state.hpp"
+#include "driver/device/identify.hpp"
+#include "driver/link/link.hpp"
+#include "driver/protocol/result.hpp"
+
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/awaitable.hpp>
+#include <spdlog/logger.h>
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace sweepcast::device {
+
+/// Who wants to know what a device does. Called on the device's executor; must not block.
+class DeviceObserver {
+public:
+    virtual ~DeviceObserver() = default;
+    virtual void on_state(const DeviceState& state) = 0;
+    /// A complete revolution. Its `lidar` is empty: naming lidars is the observer's business.
+    virtual void on_sweep(CapturedSweep sweep) = 0;
+};
+
+/// Opens the device's port anew; called for every attempt.
+using OpenLink = std::function<Result<std::unique_ptr<link::Link>, Problem>()>;
+
+struct DeviceOptions {
+    /// Start scanning as soon as the device is there.
+    bool scan_at_once{true};
+    /// Name of the scan mode; empty: the fastest.
+    std::string mode;
+    /// How long to wait after a failure before the next attempt.
+    std::chrono::milliseconds retry_delay{2000};
+};
+
+/// One lidar, on one executor; all members are to be called on it.
+class Device {
+public:
+    Device(
+        boost::asio::any_io_executor executor,
+        OpenLink open_link,
+        DeviceOptions options,
+        DeviceObserver& observer,
+        std::shared_ptr<spdlog::logger> log
+    );
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+
+    /// Lives until shut_down(); ends with the scan stopped, the motor off and the port closed.
+    boost::asio::awaitable<void> run();
+
+    /// Makes run() end.
+    void shut_down();
+
+    /// Scans, in the named mode (empty: as before). Returns once samples come in.
+    /// Errors: errc::unknown_mode, not_ready, superseded, shutting_down, or why the device failed.
+    boost::asio::awaitable<Result<void, Problem>> start(std::string mode);
+
+    /// Ends the scan. Returns once the motor has been switched off.
+    /// Errors: errc::not_ready, superseded, shutting_down.
+    boost::asio::awaitable<Result<void, Problem>> stop();
+
+    /// Reboots the lidar (RESET, protocol.md 11.2); a scan that was wanted is started again.
+    /// Returns once the lidar has answered and, where wanted, scans. Errors: as start().
+    boost::asio::awaitable<Result<void, Problem>> reset();
+
+    [[nodiscard]] const DeviceState& state() const { return state_; }
+
+private:
+    /// What the users of the lidar want of it. `command` counts the changes of mind.
+    struct Wanted {
+        bool scanning{};
+        std::string mode;
+        bool reset{};
+        bool shutdown{};
+        std::uint64_t command{};
+    };
+
+    boost::asio::awaitable<Problem> live();
+    boost::asio::awaitable<Result<void>> next_step(Conversation& talk);
+    boost::asio::awaitable<Result<void>> idle(Conversation& talk, Phase phase);
+    boost::asio::awaitable<Result<void>> scan(Conversation& talk);
+    boost::asio::awaitable<Result<void>>
+    deliver_sweeps(Conversation& talk, protocol::AnswerType type, const ScanMode& mode);
+    boost::asio::awaitable<Result<void>> reboot(Conversation& talk);
+    boost::asio::awaitable<Result<void>> set_motor(Conversation& talk, bool on);
+    boost::asio::awaitable<Result<void, Problem>>
+    settle(std::function<bool()> reached, std::chrono::milliseconds limit);
+
+    void adopt(Identity identity);
+    void publish(protocol::Sweep sweep, protocol::AnswerType type, const ScanMode& mode);
+    void set_phase(Phase phase, const Problem& why = {});
+    void poke();
+    [[nodiscard]] const ScanMode* wanted_mode() const;
+    [[nodiscard]] bool settled() const;
+
+    OpenLink open_link_;
+    DeviceOptions options_;
+    DeviceObserver& observer_;
+    std::shared_ptr<spdlog::logger> log_;
+
+    Wanted wanted_;
+    DeviceState state_;
+    std::uint64_t state_version_{};
+    std::uint64_t sequence_{};
+    link::Link* link_{};  ///< the open one, while there is one
+    async::Notifier commanded_;
+    async::Notifier changed_;
+};
+
+}  // namespace sweepcast::device

@@ -1,0 +1,40 @@
+#include "driver/device/error.hpp"
+
+#include <string>
+
+namespace sweepcast::device {
+
+namespace {
+
+class Category final : public boost::system::error_category {
+public:
+    [[nodiscard]] const char* name() const noexcept override { return "sweepcast.device"; }
+    [[nodiscard]] std::string message(int value) const override {
+        switch (static_cast<errc>(value)) {
+        case errc::no_answer:
+            return "the lidar does not answer";
+        case errc::stream_silent:
+            return "the lidar sends no samples";
+        case errc::protection_stop:
+            return "the lidar is in protection stop";
+        case errc::unknown_mode:
+            return "no such scan mode";
+        case errc::not_ready:
+            return "the lidar did not get there in time";
+        case errc::superseded:
+            return "another command came first";
+        case errc::shutting_down:
+            return "the gateway is shutting down";
+        }
+        return "unknown error";
+    }
+};
+
+}  // namespace
+
+boost::system::error_code make_error_code(errc code) {
+    static const Category category;
+    return {static_cast<int>(code), category};
+}
+
+}  // namespace sweepcast::device

@@ -1,0 +1,23 @@
+// What can go wrong in a lidar's life above the line: it does not answer, or not as it should.
+#pragma once
+
+#include <boost/system/error_code.hpp>
+
+namespace sweepcast::device {
+
+enum class errc {
+    no_answer = 1,    ///< a request went unanswered
+    stream_silent,    ///< the scan was started but no samples come
+    protection_stop,  ///< the lidar reports a fault and has switched itself off
+    unknown_mode,     ///< no scan mode of that name
+    not_ready,        ///< the command did not take effect in time
+    superseded,       ///< another command came before this one took effect
+    shutting_down,    ///< the gateway is ending
+};
+
+boost::system::error_code make_error_code(errc code);
+
+}  // namespace sweepcast::device
+
+template <>
+struct boost::system::is_error_code_enum<sweepcast::device::errc> : std::true_type {};

@@ -1,0 +1,40 @@
+// ScanMode: one way a lidar can scan, and which of them to take.
+#pragma once
+
+#include "driver/protocol/answer_type.hpp"
+#include "driver/protocol/reply.hpp"
+#include "driver/protocol/request.hpp"
+
+#include <chrono>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sweepcast::device {
+
+struct ScanMode {
+    std::string name;
+    protocol::AnswerType answer_type{};
+    std::chrono::microseconds sample_duration{};
+
+    [[nodiscard]] double samples_per_second() const {
+        return sample_duration.count() > 0 ? 1e6 / static_cast<double>(sample_duration.count())
+                                           : 0.0;
+    }
+};
+
+/// The modes of a lidar that answers GET_SAMPLERATE: Standard, and Express from firmware 1.17 on
+/// (protocol.md 2, 4.4).
+[[nodiscard]] std::vector<ScanMode>
+legacy_modes(const protocol::DeviceInfo& info, const protocol::SampleRate& rate);
+
+/// The request that starts a scan in this mode.
+[[nodiscard]] protocol::Request scan_request(const ScanMode& mode);
+
+/// The mode called `name` (upper or lower case), or nullptr.
+[[nodiscard]] const ScanMode* find_mode(const std::vector<ScanMode>& modes, std::string_view name);
+
+/// The mode with the most samples a second, or nullptr if there is none.
+[[nodiscard]] const ScanMode* fastest_mode(const std::vector<ScanMode>& modes);
+
+}  // namespace sweepcast::device

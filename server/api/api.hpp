@@ -1,0 +1,51 @@
+// Api: the routes under /api/v1 and their handlers. Value in, value out: no socket, no Beast.
+#pragma once
+
+#include "driver/protocol/result.hpp"
+#include "server/api/request.hpp"
+#include "server/hub/local_hub.hpp"
+
+#include <boost/asio/awaitable.hpp>
+
+#include <cstdint>
+#include <string>
+
+namespace sweepcast::api {
+
+/// What the API can have done to a lidar, by its number. May be called on any worker.
+class LidarControl {
+public:
+    virtual ~LidarControl() = default;
+    using Outcome = Result<hub::LidarSnapshotPtr, Problem>;
+    virtual boost::asio::awaitable<Outcome> start(std::uint32_t lidar, std::string mode) = 0;
+    virtual boost::asio::awaitable<Outcome> stop(std::uint32_t lidar) = 0;
+    virtual boost::asio::awaitable<Outcome> reset(std::uint32_t lidar) = 0;
+};
+
+/// The API as seen from one worker: what it tells comes from that worker's share of the hub.
+class Api {
+public:
+    Api(const hub::LocalHub& hub, LidarControl& control) : hub_(hub), control_(control) {}
+
+    /// Answers any request, also impossible ones. Takes as long as the lidar takes to obey.
+    boost::asio::awaitable<Response> handle(Request request) const;
+
+private:
+    using Handler =
+        boost::asio::awaitable<Response> (Api::*)(const Request&, const std::string& id) const;
+    struct Route;
+    static const Route routes[];
+
+    boost::asio::awaitable<Response> list_lidars(const Request&, const std::string& id) const;
+    boost::asio::awaitable<Response> get_lidar(const Request&, const std::string& id) const;
+    boost::asio::awaitable<Response> start(const Request&, const std::string& id) const;
+    boost::asio::awaitable<Response> stop(const Request&, const std::string& id) const;
+    boost::asio::awaitable<Response> reset(const Request&, const std::string& id) const;
+    boost::asio::awaitable<Response> latest_scan(const Request&, const std::string& id) const;
+    boost::asio::awaitable<Response> healthz(const Request&, const std::string& id) const;
+
+    const hub::LocalHub& hub_;
+    LidarControl& control_;
+};
+
+}  // namespace sweepcast::api

@@ -1,0 +1,22 @@
+// The one shape of the API's errors, and the table from the driver's errors to HTTP.
+#pragma once
+
+#include "driver/protocol/result.hpp"
+#include "server/api/request.hpp"
+
+#include <string>
+
+namespace sweepcast::api {
+
+/// {"error": {"code", "message", "hint"}} with this status.
+[[nodiscard]] Response error_response(
+    int status,
+    const std::string& code,
+    const std::string& message,
+    const std::string& hint
+);
+
+/// The answer to a command that a lidar could not carry out.
+[[nodiscard]] Response error_response(const Problem& problem);
+
+}  // namespace sweepcast::api

@@ -1,0 +1,57 @@
+#include "server/api/scan_export.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <iterator>
+
+namespace sweepcast::api {
+
+namespace {
+
+std::int64_t microseconds_after(protocol::SampleTime first, protocol::SampleTime time) {
+    return (time - first).count();
+}
+
+}  // namespace
+
+void to_message(const device::CapturedSweep& captured, v1::LatestScan& scan) {
+    const auto& samples = captured.sweep.samples;
+    scan.set_lidar(captured.lidar);
+    scan.set_sequence(captured.sequence);
+    scan.set_mode(captured.mode);
+    scan.set_rotation_hz(captured.sweep.rotation_hz());
+    if (samples.empty()) {
+        return;
+    }
+    const auto first = samples.front().time;
+    const std::chrono::nanoseconds unix_time =
+        first.time_since_epoch() + captured.monotonic_to_unix;
+    const auto seconds = std::chrono::floor<std::chrono::seconds>(unix_time);
+    scan.mutable_time()->set_seconds(seconds.count());
+    scan.mutable_time()->set_nanos(static_cast<std::int32_t>((unix_time - seconds).count()));
+    for (const auto& sample : samples) {
+        scan.add_angle_deg(sample.angle.degrees());
+        scan.add_distance_mm(sample.distance.millimetres());
+        scan.add_quality(sample.quality);
+        scan.add_time_us(microseconds_after(first, sample.time));
+    }
+}
+
+std::string to_csv(const device::CapturedSweep& captured) {
+    std::string text = "angle_deg,distance_mm,quality,time_us\n";
+    const auto& samples = captured.sweep.samples;
+    for (const auto& sample : samples) {
+        fmt::format_to(
+            std::back_inserter(text),
+            "{:.4f},{:.2f},{},{}\n",
+            sample.angle.degrees(),
+            sample.distance.millimetres(),
+            sample.quality,
+            microseconds_after(samples.front().time, sample.time)
+        );
+    }
+    return text;
+}
+
+}  // namespace sweepcast::api

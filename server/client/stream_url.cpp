@@ -1,0 +1,32 @@
+#include "server/client/stream_url.hpp"
+
+#include <boost/url/parse.hpp>
+#include <boost/url/url_view.hpp>
+#include <fmt/format.h>
+
+namespace sweepcast::client {
+
+Result<StreamUrl, Problem> parse_stream_url(std::string_view text) {
+    const Problem bad{
+        make_error_code(boost::system::errc::invalid_argument),
+        fmt::format("\"{}\" is not a stream's URL", text),
+        "write tcp://HOST:PORT or ws://HOST:PORT/api/v1/stream, for example tcp://127.0.0.1:8081"};
+    const auto parsed = boost::urls::parse_uri(text);
+    if (!parsed || parsed->host().empty()) {
+        return bad;
+    }
+    StreamUrl url;
+    url.websocket = parsed->scheme() == "ws";
+    if (!url.websocket && parsed->scheme() != "tcp") {
+        return bad;
+    }
+    url.host = parsed->host_address();
+    url.port = parsed->has_port() ? std::string(parsed->port()) : (url.websocket ? "8080" : "8081");
+    url.target = parsed->encoded_target();
+    if (url.target.empty() || url.target == "/") {
+        url.target = "/api/v1/stream";
+    }
+    return url;
+}
+
+}  // namespace sweepcast::client

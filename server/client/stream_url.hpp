@@ -1,0 +1,21 @@
+// Where a stream is, as users write it: tcp://HOST:PORT or ws://HOST:PORT/PATH.
+#pragma once
+
+#include "driver/protocol/result.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace sweepcast::client {
+
+struct StreamUrl {
+    bool websocket{};
+    std::string host;
+    std::string port;
+    std::string target;  ///< path and query; of a WebSocket only
+};
+
+/// Ports default to 8081 (tcp) and 8080 (ws), a WebSocket's path to /api/v1/stream.
+[[nodiscard]] Result<StreamUrl, Problem> parse_stream_url(std::string_view text);
+
+}  // namespace sweepcast::client

@@ -1,0 +1,266 @@
+#include "server/gateway/gateway.hpp"
+
+#include "driver/device/advice.hpp"
+#include "driver/device/probe.hpp"
+#include "driver/link/serial_link.hpp"
+#include "server/http/http_session.hpp"
+#include "server/net/endpoint.hpp"
+#include "server/stream/messages.hpp"
+#include "server/stream/session.hpp"
+#include "server/stream/tcp_transport.hpp"
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/use_future.hpp>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <future>
+#include <utility>
+
+namespace sweepcast::gateway {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr auto lidars_end_within = 700ms;
+constexpr auto sessions_end_within = 200ms;
+constexpr auto cancelled_within = 100ms;
+constexpr const char* farewell = "the gateway is shutting down";
+
+/// Reports a coroutine that ended by an exception: a broken invariant, for nothing expected is
+/// thrown.
+async::TaskGroup::OnFailure log_failure(std::shared_ptr<spdlog::logger> log) {
+    return [log = std::move(log)](std::exception_ptr failure) {
+        try {
+            std::rethrow_exception(failure);
+        } catch (const std::exception& e) {
+            log->error("a task failed: {}", e.what());
+        }
+    };
+}
+
+/// Ends a worker's sessions: those that do not take the farewell in time are cut off.
+asio::awaitable<bool> end_tasks(async::Worker& worker, hub::LocalHub& hub) {
+    hub.close_all(stream::closing_message(farewell), farewell);
+    if (co_await worker.tasks().join(sessions_end_within)) {
+        co_return true;
+    }
+    worker.tasks().cancel();
+    co_return co_await worker.tasks().join(cancelled_within);
+}
+
+std::string describe_peer(const tcp::socket& socket) {
+    error_code gone;
+    const auto peer = socket.remote_endpoint(gone);
+    return gone ? "tcp client" : "tcp " + net::to_text(peer);
+}
+
+/// Has a lidar obey on its own worker; what it answers is the state it is in then.
+asio::awaitable<api::LidarControl::Outcome>
+command(ManagedLidar& lidar, asio::awaitable<Result<void, Problem>> order) {
+    auto obey = [](ManagedLidar& obeying, asio::awaitable<Result<void, Problem>> what
+                ) -> asio::awaitable<api::LidarControl::Outcome> {
+        if (const auto done = co_await std::move(what); !done) {
+            co_return done.error();
+        }
+        co_return obeying.snapshot();
+    };
+    co_return co_await async::run_on(lidar.worker().executor(), obey(lidar, std::move(order)));
+}
+
+asio::awaitable<void> serve_tcp(
+    tcp::socket socket,
+    hub::LocalHub& hub,
+    hub::MailboxLimits mailbox,
+    std::shared_ptr<spdlog::logger> log
+) {
+    stream::SessionSettings settings{describe_peer(socket), std::nullopt, mailbox};
+    const auto transport = stream::make_tcp_transport(std::move(socket));
+    co_await stream::serve_subscriber(*transport, hub, std::move(settings), std::move(log));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Gateway>, Problem>
+Gateway::start(GatewayOptions options, const MakeLogger& make_logger) {
+    std::unique_ptr<Gateway> gateway(new Gateway(std::move(options), make_logger));
+    if (auto listening = gateway->listen(make_logger); !listening) {
+        return listening.error();
+    }
+    if (auto added = gateway->add_lidars(make_logger); !added) {
+        return added.error();
+    }
+    for (auto& lidar : gateway->lidars_) {
+        lidar->start();
+    }
+    gateway->http_->start();
+    gateway->tcp_->start();
+    return gateway;
+}
+
+Gateway::Gateway(GatewayOptions options, const MakeLogger& make_logger)
+    : options_(std::move(options))
+    , log_(make_logger("gateway"))
+    , virtual_lidars_(log_failure(log_)) {
+    std::vector<hub::Hub::Executor> executors;
+    for (std::size_t i = 0; i < options_.threads; ++i) {
+        workers_.push_back(
+            std::make_unique<async::Worker>(fmt::format("worker {}", i), log_failure(log_))
+        );
+        executors.push_back(workers_.back()->executor());
+    }
+    hub_ = std::make_unique<hub::Hub>(executors);
+    for (std::size_t i = 0; i < workers_.size(); ++i) {
+        apis_.push_back(api::Api(hub_->local(i), *this));
+    }
+}
+
+Gateway::~Gateway() {
+    stop();
+    // A coroutine that did not end in time is destroyed with its worker, while what it refers to is
+    // still there; the acceptors in turn need the workers' contexts.
+    http_.reset();
+    tcp_.reset();
+    workers_.clear();
+}
+
+Result<void, Problem> Gateway::listen(const MakeLogger& make_logger) {
+    auto http = net::Listener::open(
+        options_.http,
+        workers_,
+        options_.max_connections,
+        [this, log = make_logger("http")](tcp::socket socket, std::size_t worker) {
+            return http::serve_http(
+                std::move(socket),
+                {apis_[worker], hub_->local(worker), options_.mailbox, log}
+            );
+        },
+        make_logger("http")
+    );
+    if (!http) {
+        return http.error();
+    }
+    http_ = std::move(*http);
+    auto tcp = net::Listener::open(
+        options_.tcp,
+        workers_,
+        options_.max_connections,
+        [this, log = make_logger("tcp")](tcp::socket socket, std::size_t worker) {
+            return serve_tcp(std::move(socket), hub_->local(worker), options_.mailbox, log);
+        },
+        make_logger("tcp")
+    );
+    if (!tcp) {
+        return tcp.error();
+    }
+    tcp_ = std::move(*tcp);
+    return {};
+}
+
+Result<void, Problem> Gateway::add_lidars(const MakeLogger& make_logger) {
+    for (const auto& url : options_.lidars) {
+        const auto number = static_cast<std::uint32_t>(lidars_.size() + 1);
+        auto where = place(url, number, make_logger);
+        if (!where) {
+            return where.error();
+        }
+        auto& worker = *workers_[lidars_.size() % workers_.size()];
+        auto log = make_logger("lidar " + where->port_name);
+        lidars_.push_back(std::make_unique<ManagedLidar>(
+            std::move(*where),
+            options_.device,
+            worker,
+            *hub_,
+            ids_,
+            std::move(log)
+        ));
+    }
+    return {};
+}
+
+/// Where a lidar is and how to open it; starts the virtual ones.
+Result<LidarPlace, Problem>
+Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make_logger) {
+    LidarPlace place{number, url.text, port_name(url), false, {}};
+    std::string path;
+    if (const auto* wanted = std::get_if<VirtualLidarUrl>(&url.where)) {
+        auto port = virtual_lidars_.add(*wanted, number, make_logger(place.port_name));
+        if (!port) {
+            return port.error();
+        }
+        path = *port;
+        place.is_virtual = true;
+    } else {
+        path = std::get<SerialLidar>(url.where).path;
+    }
+    const auto executor = workers_[(number - 1) % workers_.size()]->executor();
+    place.open_link = [executor, path] {
+        return link::open_serial(executor, path, device::default_baud);
+    };
+    return place;
+}
+
+void Gateway::stop() {
+    if (std::exchange(stopped_, true)) {
+        return;
+    }
+    for (auto* listener : {http_.get(), tcp_.get()}) {
+        if (listener != nullptr) {
+            listener->close();
+        }
+    }
+    stop_lidars();
+    end_sessions();
+    for (auto& worker : workers_) {
+        worker->stop();
+    }
+    virtual_lidars_.stop();
+}
+
+void Gateway::stop_lidars() {
+    for (auto& lidar : lidars_) {
+        lidar->shut_down();
+    }
+    const auto deadline = std::chrono::steady_clock::now() + lidars_end_within;
+    for (auto& lidar : lidars_) {
+        if (lidar->stopped().wait_until(deadline) != std::future_status::ready) {
+            log_->warn("a lidar did not stop in time; its motor may still turn");
+        }
+    }
+}
+
+void Gateway::end_sessions() {
+    std::vector<std::future<bool>> ends;
+    for (std::size_t i = 0; i < workers_.size(); ++i) {
+        ends.push_back(asio::co_spawn(
+            workers_[i]->executor(),
+            end_tasks(*workers_[i], hub_->local(i)),
+            asio::use_future
+        ));
+    }
+    for (auto& end : ends) {
+        if (!end.get()) {
+            log_->warn("some clients did not end in time");
+        }
+    }
+}
+
+asio::awaitable<api::LidarControl::Outcome> Gateway::start(std::uint32_t lidar, std::string mode) {
+    auto& managed = *lidars_.at(lidar - 1);
+    co_return co_await command(managed, managed.device().start(std::move(mode)));
+}
+
+asio::awaitable<api::LidarControl::Outcome> Gateway::stop(std::uint32_t lidar) {
+    auto& managed = *lidars_.at(lidar - 1);
+    co_return co_await command(managed, managed.device().stop());
+}
+
+asio::awaitable<api::LidarControl::Outcome> Gateway::reset(std::uint32_t lidar) {
+    auto& managed = *lidars_.at(lidar - 1);
+    co_return co_await command(managed, managed.device().reset());
+}
+
+}  // namespace sweepcast::gateway

@@ -1,0 +1,79 @@
+#include "server/gateway/managed_lidar.hpp"
+
+#include "driver/protocol/reply.hpp"
+#include "server/stream/messages.hpp"
+
+#include <boost/asio/post.hpp>
+
+#include <utility>
+
+namespace sweepcast::gateway {
+
+namespace asio = boost::asio;
+
+ManagedLidar::ManagedLidar(
+    LidarPlace place,
+    device::DeviceOptions options,
+    async::Worker& worker,
+    hub::Hub& hub,
+    LidarIds& ids,
+    std::shared_ptr<spdlog::logger> log
+)
+    : place_(std::move(place))
+    , worker_(worker)
+    , hub_(hub)
+    , ids_(ids)
+    , log_(std::move(log))
+    , stopped_(ended_.get_future())
+    , device_(worker.executor(), place_.open_link, std::move(options), *this, log_) {}
+
+void ManagedLidar::start() {
+    asio::post(worker_.executor(), [this] {
+        on_state(device_.state());
+        worker_.tasks().spawn(live());
+    });
+}
+
+void ManagedLidar::shut_down() {
+    asio::post(worker_.executor(), [this] { device_.shut_down(); });
+}
+
+asio::awaitable<void> ManagedLidar::live() {
+    struct Ended {
+        std::promise<void>& promise;
+        ~Ended() { promise.set_value(); }
+    } ended{ended_};
+    co_await device_.run();
+}
+
+void ManagedLidar::on_state(const device::DeviceState& state) {
+    auto snapshot = std::make_shared<hub::LidarSnapshot>();
+    snapshot->number = place_.number;
+    snapshot->port_name = place_.port_name;
+    snapshot->url = place_.url;
+    snapshot->is_virtual = place_.is_virtual;
+    snapshot->state = state;
+    const auto wished =
+        state.info ? protocol::short_serial_text(state.info->serial) : place_.port_name;
+    const auto longer = state.info ? protocol::serial_text(state.info->serial) : place_.port_name;
+    snapshot->id = ids_.claim(place_.number, wished, longer);
+    snapshot_ = snapshot;
+    hub_.publish(hub::StateNews{snapshot_, stream::state_message(*snapshot_)});
+}
+
+void ManagedLidar::on_sweep(device::CapturedSweep sweep) {
+    sweep.lidar = snapshot_->id;
+    sweep.lidar_number = place_.number;
+    hub::SweepNews news;
+    news.lidar = place_.number;
+    for (const auto compression : {frame::Compression::zstd, frame::Compression::none}) {
+        if (hub_.wanted(compression)) {
+            news.frames[static_cast<std::size_t>(compression)] =
+                encoder_.encode(sweep, compression);
+        }
+    }
+    news.sweep = std::make_shared<const device::CapturedSweep>(std::move(sweep));
+    hub_.publish(std::move(news));
+}
+
+}  // namespace sweepcast::gateway

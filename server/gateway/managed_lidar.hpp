@@ -1,0 +1,68 @@
+// ManagedLidar: one lidar of the gateway. Runs its device on one worker and publishes what it sees.
+#pragma once
+
+#include "driver/async/worker.hpp"
+#include "driver/device/device.hpp"
+#include "server/frame/frame_encoder.hpp"
+#include "server/gateway/lidar_ids.hpp"
+#include "server/hub/hub.hpp"
+
+#include <spdlog/logger.h>
+
+#include <cstdint>
+#include <future>
+#include <memory>
+#include <string>
+
+namespace sweepcast::gateway {
+
+/// What the gateway knows of a lidar before it has been asked anything.
+struct LidarPlace {
+    std::uint32_t number{};
+    std::string url;
+    std::string port_name;
+    bool is_virtual{};
+    device::OpenLink open_link;
+};
+
+/// Belongs to its worker: after start() everything but stopped() runs there.
+class ManagedLidar final : private device::DeviceObserver {
+public:
+    ManagedLidar(
+        LidarPlace place,
+        device::DeviceOptions options,
+        async::Worker& worker,
+        hub::Hub& hub,
+        LidarIds& ids,
+        std::shared_ptr<spdlog::logger> log
+    );
+
+    /// Begins the lidar's life. From any thread.
+    void start();
+    /// Ends it: scan stopped, motor off, port closed. From any thread; stopped() tells when.
+    void shut_down();
+    /// Becomes ready when the life begun by start() has ended.
+    [[nodiscard]] std::future<void>& stopped() { return stopped_; }
+
+    [[nodiscard]] async::Worker& worker() { return worker_; }
+    [[nodiscard]] device::Device& device() { return device_; }
+    [[nodiscard]] hub::LidarSnapshotPtr snapshot() const { return snapshot_; }
+
+private:
+    void on_state(const device::DeviceState& state) override;
+    void on_sweep(device::CapturedSweep sweep) override;
+    boost::asio::awaitable<void> live();
+
+    LidarPlace place_;
+    async::Worker& worker_;
+    hub::Hub& hub_;
+    LidarIds& ids_;
+    std::shared_ptr<spdlog::logger> log_;
+    frame::FrameEncoder encoder_;
+    hub::LidarSnapshotPtr snapshot_;
+    std::promise<void> ended_;
+    std::future<void> stopped_;
+    device::Device device_;
+};
+
+}  // namespace sweepcast::gateway

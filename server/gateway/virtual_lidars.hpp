@@ -1,0 +1,39 @@
+// VirtualLidars: the virtual lidars that the gateway starts itself, on a thread of their own so
+// that neither side's work shows in the other's timing.
+#pragma once
+
+#include "driver/async/worker.hpp"
+#include "driver/protocol/result.hpp"
+#include "driver/virtual/virtual_lidar.hpp"
+#include "server/gateway/lidar_url.hpp"
+
+#include <spdlog/logger.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sweepcast::gateway {
+
+class VirtualLidars {
+public:
+    explicit VirtualLidars(async::TaskGroup::OnFailure on_failure)
+        : on_failure_(std::move(on_failure)) {}
+    ~VirtualLidars() { stop(); }
+
+    /// Starts one and returns the path of its port. `number` makes its serial number and its noise
+    /// its own. The Problem says what is wrong with model or world.
+    Result<std::string, Problem>
+    add(const VirtualLidarUrl& url, std::uint32_t number, std::shared_ptr<spdlog::logger> log);
+
+    /// Ends them all.
+    void stop();
+
+private:
+    async::TaskGroup::OnFailure on_failure_;
+    std::vector<std::unique_ptr<virtual_lidar::VirtualLidar>> lidars_;
+    std::unique_ptr<async::Worker> worker_;  ///< made for the first one
+};
+
+}  // namespace sweepcast::gateway

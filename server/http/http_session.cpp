@@ -1,0 +1,290 @@
+#include "server/http/http_session.hpp"
+
+#include "server/api/errors.hpp"
+#include "server/api/request.hpp"
+#include "server/http/page.hpp"
+#include "server/stream/messages.hpp"
+#include "server/stream/session.hpp"
+#include "server/stream/ws_transport.hpp"
+#include "server/version.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <exception>
+#include <optional>
+#include <utility>
+
+namespace sweepcast::http {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace bhttp = beast::http;
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr std::uint32_t header_limit = 16 * 1024;
+constexpr std::uint64_t body_limit = 64 * 1024;
+constexpr auto request_limit = 30s;
+constexpr auto between_requests = 60s;
+constexpr auto response_limit = 30s;
+
+constexpr const char* stream_path = "/api/v1/stream";
+
+using BeastRequest = bhttp::request<bhttp::string_body>;
+using BeastResponse = bhttp::response<bhttp::string_body>;
+
+std::string_view view(beast::string_view text) {
+    return {text.data(), text.size()};
+}
+
+BeastResponse
+to_beast(api::Response response, unsigned http_version, bool keep_alive, bool head_only) {
+    BeastResponse out(static_cast<bhttp::status>(response.status), http_version);
+    out.set(bhttp::field::server, std::string("sweepcast ") + version);
+    out.set("X-Content-Type-Options", "nosniff");
+    out.set(bhttp::field::content_type, response.content_type);
+    if (response.headers.empty()) {
+        out.set(bhttp::field::cache_control, "no-store");
+    }
+    for (const auto& [name, value] : response.headers) {
+        out.set(name, value);
+    }
+    out.keep_alive(keep_alive);
+    const auto size = response.body.size();
+    if (!head_only) {
+        out.body() = std::move(response.body);
+    }
+    if (response.status != 304) {
+        out.content_length(size);
+    }
+    return out;
+}
+
+/// The answer to a request that could not even be read; nothing where none is due.
+std::optional<api::Response> unreadable(const error_code& failed) {
+    if (failed == bhttp::error::header_limit) {
+        return api::error_response(
+            431,
+            "header_too_large",
+            "the header is too large",
+            fmt::format("at most {} bytes", header_limit)
+        );
+    }
+    if (failed == bhttp::error::body_limit) {
+        return api::error_response(
+            413,
+            "body_too_large",
+            "the body is too large",
+            fmt::format("at most {} bytes", body_limit)
+        );
+    }
+    if (failed.category() == bhttp::make_error_code(bhttp::error::bad_method).category() &&
+        failed != bhttp::error::end_of_stream && failed != bhttp::error::partial_message) {
+        return api::error_response(
+            400,
+            "bad_request",
+            "this is not an HTTP request: " + failed.message(),
+            "the stream for programs is on the TCP port"
+        );
+    }
+    return std::nullopt;
+}
+
+api::Response wrong_origin() {
+    return api::error_response(
+        403,
+        "wrong_origin",
+        "a page of another site may not use this gateway",
+        "open the gateway's own page, or send no Origin header"
+    );
+}
+
+bool from_own_page(const BeastRequest& request) {
+    return api::same_origin(view(request[bhttp::field::origin]), view(request[bhttp::field::host]));
+}
+
+/// One connection, with the deadlines of its socket.
+class Session {
+public:
+    Session(asio::ip::tcp::socket socket, HttpContext context)
+        : stream_(std::move(socket))
+        , context_(std::move(context)) {}
+
+    asio::awaitable<void> run() {
+        bool keep_alive = true;
+        for (auto limit = std::chrono::seconds(request_limit); keep_alive;
+             limit = between_requests) {
+            bhttp::request_parser<bhttp::string_body> parser;
+            parser.header_limit(header_limit);
+            parser.body_limit(body_limit);
+            stream_.expires_after(limit);
+            const auto [failed, size] = co_await bhttp::async_read(
+                stream_,
+                buffer_,
+                parser,
+                asio::as_tuple(asio::use_awaitable)
+            );
+            if (failed) {
+                if (auto response = unreadable(failed)) {
+                    co_await write(to_beast(std::move(*response), 11, false, false));
+                }
+                break;
+            }
+            auto request = parser.release();
+            if (beast::websocket::is_upgrade(request)) {
+                if (co_await upgrade(std::move(request))) {
+                    co_return;
+                }
+                break;
+            }
+            // A command takes as long as the lidar takes to obey, which the device bounds.
+            stream_.expires_never();
+            keep_alive = co_await write(co_await answer(request)) && request.keep_alive();
+        }
+        error_code ignored;  // the client may have gone first
+        stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+    }
+
+private:
+    asio::awaitable<BeastResponse> answer(const BeastRequest& request) {
+        const bool head = request.method() == bhttp::verb::head;
+        api::Response response;
+        try {
+            response = co_await route(request);
+        } catch (const boost::system::system_error&) {
+            throw;  // cancelled: the gateway is ending
+        } catch (const std::exception& failure) {
+            context_.log->error(
+                "http: {} {} failed: {}",
+                view(request.method_string()),
+                view(request.target()),
+                failure.what()
+            );
+            response = api::error_response(
+                500,
+                "internal_error",
+                "the gateway could not answer",
+                "its log says why"
+            );
+        }
+        co_return to_beast(std::move(response), request.version(), request.keep_alive(), head);
+    }
+
+    asio::awaitable<api::Response> route(const BeastRequest& from) {
+        api::Request request;
+        request.method = from.method_string();
+        request.accept = from[bhttp::field::accept];
+        request.body = from.body();
+        if (!api::set_target(request, view(from.target()))) {
+            co_return api::error_response(
+                400,
+                "bad_target",
+                fmt::format("\"{}\" is not a path", view(from.target())),
+                ""
+            );
+        }
+        const bool looks = request.method == "GET" || request.method == "HEAD";
+        if (!looks && !from_own_page(from)) {
+            co_return wrong_origin();
+        }
+        if (looks && request.path == stream_path) {
+            co_return api::error_response(
+                426,
+                "upgrade_required",
+                "the stream speaks WebSocket",
+                fmt::format("open it as ws://HOST:PORT{}", stream_path)
+            );
+        }
+        if (looks) {
+            auto file = page_response(
+                request.path,
+                view(from[bhttp::field::accept_encoding]),
+                view(from[bhttp::field::if_none_match])
+            );
+            if (file) {
+                co_return std::move(*file);
+            }
+        }
+        co_return co_await context_.api.handle(std::move(request));
+    }
+
+    /// Turns the connection into a stream. False if it stays an HTTP connection with an error on
+    /// it.
+    asio::awaitable<bool> upgrade(BeastRequest request) {
+        auto settings = session_settings(request);
+        if (!settings) {
+            co_await write(to_beast(settings.error(), request.version(), false, false));
+            co_return false;
+        }
+        stream_.expires_never();  // from here on the WebSocket has deadlines of its own
+        const auto transport =
+            co_await stream::accept_websocket(std::move(stream_), std::move(request));
+        if (transport) {
+            co_await stream::serve_subscriber(
+                **transport,
+                context_.hub,
+                std::move(*settings),
+                context_.log
+            );
+        }
+        co_return true;
+    }
+
+    Result<stream::SessionSettings, api::Response> session_settings(const BeastRequest& from) {
+        api::Request request;
+        if (!api::set_target(request, view(from.target())) || request.path != stream_path) {
+            return api::error_response(
+                404,
+                "not_found",
+                fmt::format("there is no stream at {}", view(from.target())),
+                fmt::format("it is at {}", stream_path)
+            );
+        }
+        if (!from_own_page(from)) {
+            return wrong_origin();
+        }
+        stream::SessionSettings settings;
+        error_code gone;
+        const auto peer = stream_.socket().remote_endpoint(gone);
+        settings.client = fmt::format("ws {}:{}", peer.address().to_string(), peer.port());
+        settings.mailbox = context_.mailbox;
+        if (!request.query.empty()) {
+            const auto wish = stream::wish_from_query(request.query, context_.hub);
+            if (!wish) {
+                const auto& refusal = wish.error();
+                const int status = refusal.code == "lidar_not_found" ? 404 : 400;
+                return api::error_response(status, refusal.code, refusal.message, refusal.hint);
+            }
+            settings.wish = *wish;
+        }
+        return settings;
+    }
+
+    /// False if the client could not take it.
+    asio::awaitable<bool> write(BeastResponse response) {
+        stream_.expires_after(response_limit);
+        const auto [failed, size] =
+            co_await bhttp::async_write(stream_, response, asio::as_tuple(asio::use_awaitable));
+        co_return !failed;
+    }
+
+    beast::tcp_stream stream_;
+    beast::flat_buffer buffer_{header_limit + body_limit};
+    HttpContext context_;
+};
+
+}  // namespace
+
+asio::awaitable<void> serve_http(asio::ip::tcp::socket socket, HttpContext context) {
+    Session session(std::move(socket), std::move(context));
+    co_await session.run();
+}
+
+}  // namespace sweepcast::http

@@ -1,0 +1,29 @@
+// One HTTP connection: reads requests, has them answered, and hands WebSocket upgrades to the
+// stream.
+#pragma once
+
+#include "server/api/api.hpp"
+#include "server/hub/local_hub.hpp"
+#include "server/hub/mailbox.hpp"
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <spdlog/logger.h>
+
+#include <memory>
+
+namespace sweepcast::http {
+
+/// What a connection needs of its worker.
+struct HttpContext {
+    const api::Api& api;
+    hub::LocalHub& hub;
+    hub::MailboxLimits mailbox;
+    std::shared_ptr<spdlog::logger> log;
+};
+
+/// Serves one connection to its end. Limits: 16 kB of header, 64 kB of body, 30 s for a request, 60
+/// s between requests.
+boost::asio::awaitable<void> serve_http(boost::asio::ip::tcp::socket socket, HttpContext context);
+
+}  // namespace sweepcast::http

@@ -1,0 +1,18 @@
+// The program's log: one sink on standard error, a logger for each part.
+#pragma once
+
+#include <spdlog/logger.h>
+
+#include <memory>
+#include <string>
+
+namespace sweepcast::log {
+
+/// Sets the level of all loggers made from now on: "debug", "info", "warning" or "error". False if
+/// it is none of these.
+[[nodiscard]] bool set_level(const std::string& level);
+
+/// A logger whose lines carry the part's name. Safe from any thread.
+[[nodiscard]] std::shared_ptr<spdlog::logger> make_logger(const std::string& part);
+
+}  // namespace sweepcast::log

@@ -1,0 +1,91 @@
+#include "server/stream/lidar_message.hpp"
+
+#include "driver/protocol/reply.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+namespace sweepcast::stream {
+
+namespace {
+
+v1::Lidar::State to_state(device::Phase phase) {
+    switch (phase) {
+    case device::Phase::disconnected:
+        return v1::Lidar::DISCONNECTED;
+    case device::Phase::identifying:
+        return v1::Lidar::IDENTIFYING;
+    case device::Phase::idle:
+        return v1::Lidar::IDLE;
+    case device::Phase::starting:
+        return v1::Lidar::STARTING;
+    case device::Phase::scanning:
+        return v1::Lidar::SCANNING;
+    case device::Phase::stopping:
+        return v1::Lidar::STOPPING;
+    case device::Phase::protection_stop:
+        return v1::Lidar::PROTECTION_STOP;
+    case device::Phase::failed:
+        return v1::Lidar::FAILED;
+    }
+    return v1::Lidar::UNKNOWN;
+}
+
+v1::Health::Status to_status(protocol::HealthStatus status) {
+    switch (status) {
+    case protocol::HealthStatus::good:
+        return v1::Health::GOOD;
+    case protocol::HealthStatus::warning:
+        return v1::Health::WARNING;
+    case protocol::HealthStatus::error:
+        return v1::Health::ERROR;
+    }
+    return v1::Health::UNKNOWN;
+}
+
+void set_device(const protocol::DeviceInfo& info, v1::DeviceInfo& message) {
+    message.set_model(protocol::model_name(info.model));
+    message.set_serial_number(protocol::serial_text(info.serial));
+    message.set_firmware(fmt::format("{}.{:02}", info.firmware_major, info.firmware_minor));
+    message.set_hardware(info.hardware);
+}
+
+void set_time(std::chrono::system_clock::time_point time, google::protobuf::Timestamp& message) {
+    const auto since_epoch = time.time_since_epoch();
+    const auto seconds = std::chrono::floor<std::chrono::seconds>(since_epoch);
+    message.set_seconds(seconds.count());
+    message.set_nanos(
+        static_cast<std::int32_t>(std::chrono::nanoseconds(since_epoch - seconds).count())
+    );
+}
+
+}  // namespace
+
+void to_message(const hub::LidarSnapshot& lidar, v1::Lidar& message) {
+    message.set_number(lidar.number);
+    message.set_id(lidar.id);
+    message.set_url(lidar.url);
+    message.set_is_virtual(lidar.is_virtual);
+    const auto& state = lidar.state;
+    message.set_state(to_state(state.phase));
+    set_time(state.since, *message.mutable_since());
+    message.set_cause(state.cause);
+    message.set_hint(state.hint);
+    message.set_mode(state.mode);
+    if (state.info) {
+        set_device(*state.info, *message.mutable_device());
+    }
+    if (state.health) {
+        message.mutable_health()->set_status(to_status(state.health->status));
+        message.mutable_health()->set_error_code(state.health->code);
+    }
+    for (const auto& mode : state.modes) {
+        auto& entry = *message.add_modes();
+        entry.set_name(mode.name);
+        entry.set_answer_type(static_cast<std::uint32_t>(mode.answer_type));
+        entry.set_samples_per_second(mode.samples_per_second());
+    }
+}
+
+}  // namespace sweepcast::stream

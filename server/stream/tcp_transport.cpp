@@ -1,0 +1,98 @@
+#include "server/stream/tcp_transport.hpp"
+
+#include "server/frame/message_framing.hpp"
+#include "server/stream/messages.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+
+#include <array>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <utility>
+
+namespace sweepcast::stream {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+
+namespace {
+
+constexpr int kernel_send_buffer = 128 * 1024;
+/// The kernel's clock for data that the peer does not take (zero window included).
+constexpr unsigned stall_limit_ms = 120'000;
+constexpr int keepalive_idle_s = 30;
+constexpr int keepalive_interval_s = 10;
+
+using KeepaliveIdle = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPIDLE>;
+using KeepaliveInterval = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPINTVL>;
+using UserTimeout = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_USER_TIMEOUT>;
+
+class TcpTransport final : public Transport {
+public:
+    explicit TcpTransport(tcp::socket socket) : socket_(std::move(socket)) {
+        set_stream_options(socket_);
+    }
+
+    asio::awaitable<Result<void>> send(const frame::WireMessage& message) override {
+        const auto bytes = message.delimited();
+        const auto [failed, sent] = co_await asio::async_write(
+            socket_,
+            asio::buffer(bytes.data(), bytes.size()),
+            asio::as_tuple(asio::use_awaitable)
+        );
+        co_return failed ? Result<void>(failed) : Result<void>{};
+    }
+
+    asio::awaitable<Result<std::string>> receive() override {
+        for (;;) {
+            auto message = reader_.next();
+            if (!message) {
+                co_return message.error();
+            }
+            if (*message) {
+                co_return std::string((*message)->begin(), (*message)->end());
+            }
+            std::array<std::uint8_t, 1024> chunk;
+            const auto [failed, got] = co_await socket_.async_read_some(
+                asio::buffer(chunk),
+                asio::as_tuple(asio::use_awaitable)
+            );
+            if (failed) {
+                co_return failed;
+            }
+            reader_.push(std::span(chunk).first(got));
+        }
+    }
+
+    asio::awaitable<void> close(const std::string&) override {
+        error_code ignored;  // the peer may have gone already
+        socket_.shutdown(tcp::socket::shutdown_both, ignored);
+        socket_.close(ignored);
+        co_return;
+    }
+
+private:
+    tcp::socket socket_;
+    frame::DelimitedReader reader_{longest_client_message};
+};
+
+}  // namespace
+
+void set_stream_options(tcp::socket& socket) {
+    error_code ignored;  // an option the kernel refuses costs comfort, not correctness
+    socket.set_option(tcp::no_delay(true), ignored);
+    socket.set_option(asio::socket_base::send_buffer_size(kernel_send_buffer), ignored);
+    socket.set_option(asio::socket_base::keep_alive(true), ignored);
+    socket.set_option(KeepaliveIdle(keepalive_idle_s), ignored);
+    socket.set_option(KeepaliveInterval(keepalive_interval_s), ignored);
+    socket.set_option(UserTimeout(stall_limit_ms), ignored);
+}
+
+std::unique_ptr<Transport> make_tcp_transport(tcp::socket socket) {
+    return std::make_unique<TcpTransport>(std::move(socket));
+}
+
+}  // namespace sweepcast::stream
