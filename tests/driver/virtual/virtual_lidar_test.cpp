@@ -234,6 +234,20 @@ TEST_F(VirtualLidarTest, EndsTidilyWhenCancelled) {
     EXPECT_FALSE(failure_);
 }
 
+TEST_F(VirtualLidarTest, CanBeDestroyedInMidScan) {
+    create({.link = folder_.path("lidar")});
+    tasks_.spawn(lidar_->run());
+    auto port = open_port();
+    const auto request = protocol::encode({Command::force_scan, {}});
+    ASSERT_EQ(::write(port.native_handle(), request.data(), request.size()), 2);
+    while (log_.str().find("scan started") == std::string::npos) {
+        ASSERT_EQ(context_.run_one_for(10s), 1U);
+    }
+    lidar_.reset(
+    );  // as at the end of a worker: nothing runs any more, coroutines go with the context
+    EXPECT_FALSE(fs::exists(fs::symlink_status(folder_.path("lidar"))));
+}
+
 TEST_F(VirtualLidarTest, TakesTheSerialNumberGiven) {
     create({.serial = "000102030405060708090A0B0C0D0E0F"});
     run_with([this]() -> asio::awaitable<void> {
