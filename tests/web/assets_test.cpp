@@ -24,7 +24,9 @@ struct Expected {
     std::string_view content_type;
 };
 
-void PrintTo(const Expected& expected, std::ostream* out) { *out << expected.path; }
+void PrintTo(const Expected& expected, std::ostream* out) {
+    *out << expected.path;
+}
 
 class AssetTest : public testing::TestWithParam<Expected> {};
 

@@ -52,11 +52,14 @@ test("a lost connection is opened again after the wait it tells", async () => {
   assert.deepEqual(kinds(), ["connecting", "open", "lost", "connecting"]);
 });
 
-test("waits grow while the gateway is away and begin anew after a greeting", async () => {
+test("waits grow while the gateway is away and begin anew after it was there for a while", async () => {
   const { surroundings, connection } = setUp();
   const waits = [];
   for (let k = 0; k < 4; ++k) {
-    if (k === 3) surroundings.socket.hello();
+    if (k === 3) {
+      surroundings.socket.hello();
+      await surroundings.pass(5000);
+    }
     surroundings.socket.drop();
     assert.equal(connection.state.kind, "lost");
     const retryAt = connection.state.kind === "lost" ? connection.state.retryAt : NaN;
@@ -64,6 +67,18 @@ test("waits grow while the gateway is away and begin anew after a greeting", asy
     await surroundings.pass(waits[k]!);
   }
   assert.deepEqual(waits, [500, 1000, 2000, 500]);
+});
+
+test("waits go on growing if the gateway greets and turns us away", async () => {
+  const { surroundings } = setUp();
+  for (let k = 0; k < 4; ++k) {
+    surroundings.socket.hello();
+    surroundings.socket.drop();
+    await surroundings.pass(500 * 2 ** k - 1);
+    assert.equal(surroundings.sockets.length, k + 1);
+    await surroundings.pass(1);
+    assert.equal(surroundings.sockets.length, k + 2);
+  }
 });
 
 test("the user need not sit out the wait", async () => {

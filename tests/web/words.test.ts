@@ -49,7 +49,7 @@ test("a mode is told by its rate and reach, as far as they are known", () => {
 
 test("a live sweep is summed up by its nearest obstacle and rate", () => {
   assert.equal(
-    summary(lidar, sweep, true, 9.97),
+    summary(true, lidar, sweep, true, 9.97),
     "Nearest obstacle 0.82 m at 143°. 10.0 sweeps/s.",
   );
 });
@@ -57,16 +57,23 @@ test("a live sweep is summed up by its nearest obstacle and rate", () => {
 test("an old sweep is said to be one", () => {
   const stopped = create(LidarSchema, { state: Lidar_State.IDLE });
   assert.equal(
-    summary(stopped, sweep, false, undefined),
-    "Ready, motor off. In the last sweep: Nearest obstacle 0.82 m at 143°.",
+    summary(true, stopped, sweep, false, undefined),
+    "Ready, motor off. In the last sweep: nearest obstacle 0.82 m at 143°.",
   );
 });
 
 test("an empty room is said to be empty", () => {
-  assert.match(summary(lidar, sweepOf(scanOf([[0, 0]])), true, 10), /^No obstacle in sight/);
+  assert.match(summary(true, lidar, sweepOf(scanOf([[0, 0]])), true, 10), /^No obstacle in sight/);
 });
 
 test("without a lidar or a sweep that is said", () => {
-  assert.equal(summary(undefined, undefined, false, undefined), "No lidar to show.");
-  assert.equal(summary(lidar, undefined, false, undefined), "Scanning. No sweep yet.");
+  assert.equal(summary(true, undefined, undefined, false, undefined), "No lidar to show.");
+  assert.equal(summary(true, lidar, undefined, false, undefined), "Scanning. No sweep yet.");
+});
+
+test("without a connection the state is not claimed to be known", () => {
+  assert.match(
+    summary(false, lidar, sweep, false, undefined),
+    /^Not connected\. In the last sweep/,
+  );
 });

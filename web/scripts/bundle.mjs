@@ -17,7 +17,7 @@ await build({
   bundle: true,
   minify: true,
   format: "esm",
-  target: ["chrome100", "firefox100", "safari15.4"],
+  target: ["chrome108", "firefox112", "safari16.4"],
   legalComments: "none",
   logLevel: "warning",
 });

@@ -35,10 +35,15 @@ const GREETING_DEADLINE_MS = 8_000;
 /// gateway is asked over HTTP.
 const SILENCE_MS = 15_000;
 
+/// A connection that ends sooner was none to speak of: the waits go on growing, so that a gateway that
+/// turns us away is not asked twice a second for ever.
+const STABLE_MS = 5_000;
+
 export class Connection {
   private state_: ConnectionState = { kind: "connecting" };
   private socket: Socket | undefined;
   private attempt = 0;
+  private openedAt: number | undefined;
   private closingReason = "";
   private cancelTimer = () => {};
 
@@ -89,7 +94,7 @@ export class Connection {
         this.lose(`The gateway speaks version ${version} of the stream: reload this page.`);
         return;
       }
-      this.attempt = 0;
+      this.openedAt = this.surroundings.now();
       this.change({ kind: "open" });
     }
     this.arm(SILENCE_MS, () => this.probe());
@@ -111,9 +116,12 @@ export class Connection {
     socket.onmessage = null;
     socket.onclose = null;
     socket.close();
+    const now = this.surroundings.now();
+    if (this.openedAt !== undefined && now - this.openedAt >= STABLE_MS) this.attempt = 0;
+    this.openedAt = undefined;
     const delay = retryDelay(this.attempt++, this.surroundings.random());
     this.arm(delay, () => this.connect());
-    this.change({ kind: "lost", reason, retryAt: this.surroundings.now() + delay });
+    this.change({ kind: "lost", reason, retryAt: now + delay });
   }
 
   // There is one timer: whatever is waited for now.

@@ -55,9 +55,9 @@ export function exposeDebugState(source: Source): void {
 }
 
 function pointOf(scene: Scene, k: number) {
-  const { drawn, view, palette } = scene;
+  const { drawn } = scene;
   if (!drawn || !(k >= 0 && k < drawn.sweep.x.length)) return undefined;
-  const { sweep, index } = drawn;
+  const { sweep, view, index, palette } = drawn;
   const colour = new Uint8Array(palette.buffer, index[k]! * 4, 3);
   return {
     angle_deg: sweep.angleDeg[k],

@@ -200,7 +200,7 @@ class Page {
 
   private refresh(): void {
     const connected = this.connection.state.kind === "open";
-    this.panel.showLidar(this.lidar);
+    this.panel.showLidar(this.lidar, connected);
     this.controls.show(this.lidars.all(), this.lidar, connected);
     this.tick();
   }
@@ -210,7 +210,8 @@ class Page {
     const live = this.live();
     const rate = live ? this.meter.rate(seconds()) : undefined;
     this.banner.show(this.connection.state, performance.now());
-    this.panel.showSince(this.lidar, Date.now() / 1000);
+    const connected = this.connection.state.kind === "open";
+    this.panel.showSince(connected ? this.lidar : undefined, Date.now() / 1000);
     this.panel.showMeasured({
       sweep: this.sweep,
       sweepsPerS: rate,
@@ -218,7 +219,7 @@ class Page {
     });
     this.stage.classList.toggle("stale", !live);
     showText(this.stageNote, this.noteOnStage(live));
-    setText(this.summaryLine, summary(this.lidar, this.sweep, live, rate));
+    setText(this.summaryLine, summary(connected, this.lidar, this.sweep, live, rate));
     if (!live) this.scene.halt();
   }
 

@@ -39,14 +39,16 @@ export class Panel {
     port: element("port", HTMLElement),
   };
 
-  /// Shows a lidar as the gateway told of it; undefined: there is none.
-  showLidar(lidar: Lidar | undefined): void {
-    const { word, tone } = stateWords(lidar?.state ?? Lidar_State.UNKNOWN);
+  /// Shows a lidar as the gateway told of it; undefined: there is none. Without a connection what it told
+  /// of the state is no longer known to be so.
+  showLidar(lidar: Lidar | undefined, connected: boolean): void {
+    const known = connected ? lidar : undefined;
+    const { word, tone } = stateWords(known?.state ?? Lidar_State.UNKNOWN);
     this.state.dataset["tone"] = tone;
     this.shape.setAttribute("d", SHAPES[tone]);
-    setText(this.word, lidar ? word : "No lidar");
-    showText(this.cause, lidar ? lidar.cause : "The gateway knows of no lidar.");
-    showText(this.hint, lidar ? lidar.hint : "Plug one in: it appears here by itself.");
+    setText(this.word, known || !connected ? word : "No lidar");
+    showText(this.cause, known?.cause ?? (connected ? "The gateway knows of no lidar." : ""));
+    showText(this.hint, known?.hint ?? "");
     this.virtualNote.hidden = !lidar?.isVirtual;
     setText(this.values.model, lidar?.device?.model || NONE);
     setText(this.values.serial, lidar?.device?.serialNumber || NONE);

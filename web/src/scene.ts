@@ -5,7 +5,7 @@ import { gridFor } from "./grid";
 import { paintGrid, type Area } from "./paint_grid";
 import { paintOverlay } from "./paint_overlay";
 import { drawPoints, type Raster } from "./points";
-import { colourIndex, colourRange, palette, type ColourBy, type Theme } from "./ramp";
+import { colourIndex, colourRange, palette as paletteOf, type ColourBy, type Theme } from "./ramp";
 import { echoNear, extentOf, type Echo, type Sweep } from "./sweep";
 import { follow, turnAt, type SweepLine } from "./sweep_line";
 import {
@@ -30,6 +30,15 @@ export interface Colours {
   background: string;
 }
 
+/// What is on the screen now: a sweep, where it is seen from, and the colour of each of its echoes as an
+/// index into the palette.
+export interface Drawn {
+  sweep: Sweep;
+  view: View;
+  index: Uint8Array;
+  palette: Uint32Array;
+}
+
 /// How near to a point the pointer must be to look at it, in CSS pixels.
 const REACH_PX = 24;
 
@@ -52,11 +61,11 @@ export class Scene {
   private view_: View = initialView(1, 1);
   private following = true;
   private sweep_: Sweep | undefined;
-  private drawn_: { sweep: Sweep; index: Uint8Array } | undefined;
+  private drawn_: Drawn | undefined;
   private colourBy: ColourBy = "range";
   private range = 0;
   private colours: Colours = readColours();
-  private palette_ = palette(this.colours.theme);
+  private palette = paletteOf(this.colours.theme);
   private line: SweepLine | undefined;
   private pointer: Point | undefined;
   private echo: Echo | undefined;
@@ -74,13 +83,8 @@ export class Scene {
     return this.view_;
   }
 
-  /// The sweep on the screen now, and the palette index of each of its echoes.
-  get drawn(): { sweep: Sweep; index: Uint8Array } | undefined {
+  get drawn(): Drawn | undefined {
     return this.drawn_;
-  }
-
-  get palette(): Uint32Array {
-    return this.palette_;
   }
 
   /// Shows a sweep that has just arrived; undefined: none (another lidar was chosen).
@@ -193,7 +197,7 @@ export class Scene {
 
   private recolour(): void {
     this.colours = readColours();
-    this.palette_ = palette(this.colours.theme);
+    this.palette = paletteOf(this.colours.theme);
     this.move(this.view_);
   }
 
@@ -239,9 +243,9 @@ export class Scene {
     };
     const { distanceM, quality } = this.sweep_;
     const index = colourIndex(this.colourBy, distanceM, quality, this.range);
-    drawPoints(raster, this.view_, this.sweep_, this.palette_, index);
+    drawPoints(raster, this.view_, this.sweep_, this.palette, index);
     context.putImageData(image, 0, 0);
-    this.drawn_ = { sweep: this.sweep_, index };
+    this.drawn_ = { sweep: this.sweep_, view: this.view_, index, palette: this.palette };
   }
 
   private drawOverlay(): void {

@@ -41,21 +41,22 @@ export function modeWords(mode: ScanMode): string {
   return [rate, reach].filter((part) => part !== "").join(", ");
 }
 
-/// The sweep in a sentence, for who cannot see the drawing.
+/// The sweep in a sentence, for who cannot see the drawing. `live`: it is what the lidar sees now.
 export function summary(
+  connected: boolean,
   lidar: Lidar | undefined,
   sweep: Sweep | undefined,
   live: boolean,
   sweepsPerS: number | undefined,
 ): string {
-  if (!lidar) return "No lidar to show.";
-  const state = `${stateWords(lidar.state).word}.`;
+  if (connected && !lidar) return "No lidar to show.";
+  const state = connected && lidar ? `${stateWords(lidar.state).word}.` : "Not connected.";
   if (!sweep) return `${state} No sweep yet.`;
   const nearest = nearestObstacle(sweep);
   const obstacle = nearest
-    ? `Nearest obstacle ${metres(nearest.distanceM)} at ${nearest.angleDeg.toFixed(0)}°.`
-    : "No obstacle in sight.";
+    ? `nearest obstacle ${metres(nearest.distanceM)} at ${nearest.angleDeg.toFixed(0)}°.`
+    : "no obstacle in sight.";
   if (!live) return `${state} In the last sweep: ${obstacle}`;
   const rate = sweepsPerS === undefined ? "" : ` ${sweepsPerS.toFixed(1)} sweeps/s.`;
-  return `${obstacle}${rate}`;
+  return `${obstacle[0]!.toUpperCase()}${obstacle.slice(1)}${rate}`;
 }
