@@ -13,6 +13,9 @@
 
 namespace sweepcast::protocol {
 
+/// When a byte arrived, fine enough for the time that a single byte takes on the line.
+using ByteTime = std::chrono::time_point<std::chrono::steady_clock, std::chrono::nanoseconds>;
+
 /// Consecutive bytes of a stream, each with the time it arrived.
 class TimedBytes {
 public:
@@ -21,20 +24,20 @@ public:
         : bytes_(bytes)
         , arrival_(arrival) {}
     /// Bytes kept from several blocks, with as many times.
-    TimedBytes(std::span<const std::uint8_t> bytes, std::span<const SampleTime> times)
+    TimedBytes(std::span<const std::uint8_t> bytes, std::span<const ByteTime> times)
         : bytes_(bytes)
         , times_(times) {}
 
     [[nodiscard]] std::span<const std::uint8_t> bytes() const { return bytes_; }
 
     /// When byte `index` arrived.
+    [[nodiscard]] ByteTime byte_time(std::size_t index) const {
+        return times_.empty() ? time_in_block(index) : times_[index];
+    }
+
+    /// The same in whole microseconds, rounded down.
     [[nodiscard]] SampleTime arrival_of(std::size_t index) const {
-        if (!times_.empty()) {
-            return times_[index];
-        }
-        const auto later = static_cast<std::int64_t>(bytes_.size() - 1 - index);
-        return arrival_.last_byte -
-               std::chrono::duration_cast<std::chrono::microseconds>(later * arrival_.per_byte);
+        return std::chrono::floor<std::chrono::microseconds>(byte_time(index));
     }
 
     /// What follows the first `count` bytes.
@@ -46,8 +49,13 @@ public:
     }
 
 private:
+    [[nodiscard]] ByteTime time_in_block(std::size_t index) const {
+        const auto later = static_cast<std::int64_t>(bytes_.size() - 1 - index);
+        return arrival_.last_byte - later * arrival_.per_byte;
+    }
+
     std::span<const std::uint8_t> bytes_;
-    std::span<const SampleTime> times_;
+    std::span<const ByteTime> times_;
     Arrival arrival_;
 };
 
@@ -99,7 +107,7 @@ private:
         const TimedBytes timed{bytes, arrival};
         for (std::size_t i = 0; i < taken; ++i) {
             bytes_[size_ + i] = bytes[i];
-            times_[size_ + i] = timed.arrival_of(i);
+            times_[size_ + i] = timed.byte_time(i);
         }
         size_ += taken;
         return taken;
@@ -112,7 +120,7 @@ private:
     }
 
     std::array<std::uint8_t, Capacity> bytes_{};
-    std::array<SampleTime, Capacity> times_{};
+    std::array<ByteTime, Capacity> times_{};
     std::size_t size_{};
 };
 

@@ -56,7 +56,8 @@ inline constexpr std::int32_t turn_q16 = 360 << 16;
 [[nodiscard]] constexpr AngleQ14 angle_from_q6(std::int32_t q6) {
     q6 += q6 < 0 ? turn_q6 : 0;
     q6 -= q6 >= turn_q6 ? turn_q6 : 0;
-    return {static_cast<std::uint16_t>(q6 * 256 / 90)};
+    // Signed division, as a doubly negative angle stays negative; 256/90 in lowest terms.
+    return {static_cast<std::uint16_t>(q6 * 128 / 45)};
 }
 
 }  // namespace sweepcast::protocol

@@ -141,16 +141,22 @@ void ExpressDecoder::decode_held(std::int32_t turned_q8, Decoded& out) const {
 
     const std::int32_t increment = turned_q8 * 8;  // q16: a 32nd of the turn
     std::int32_t raw = held_->start.angle().raw * 1024;
+    // The same within one turn. The vendor tests `next raw % turn < increment`: the turn ends in
+    // this step.
+    std::int32_t in_turn = raw % turn_q16;
     auto time = timing_.last_sample(held_->arrival) -
                 (express_samples_per_capsule - 1) * timing_.sample_duration();
     const auto put = [&](unsigned word, unsigned offset_q3) {
         const auto corrected = raw - static_cast<std::int32_t>(offset_q3) * 8192;
         raw += increment;
+        in_turn += increment;
+        const bool turn_ends = in_turn >= turn_q16;
+        in_turn -= turn_ends ? turn_q16 : 0;
         sample->time = time;
         sample->distance.raw = word & 0xFFFCU;
         sample->angle = angle_from_q6(corrected >> 10);
         sample->quality = sample->distance.has_echo() ? quality_with_echo : 0;
-        sample->flag = raw % turn_q16 < increment ? 1 : 2;
+        sample->flag = turn_ends ? 1 : 2;
         time += timing_.sample_duration();
         ++sample;
     };
