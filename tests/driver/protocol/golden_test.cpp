@@ -78,7 +78,7 @@ TEST_P(GoldenTimingTest, GivesTheVendorsTimes) {
     EXPECT_EQ(times, timing.sample_times);
 }
 
-constexpr auto name_of = [](const auto& info) { return "v" + info.param; };
+constexpr auto name_of = [](const auto& tested) { return "v" + tested.param; };
 
 INSTANTIATE_TEST_SUITE_P(
     Clean,
