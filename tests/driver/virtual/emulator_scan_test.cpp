@@ -123,7 +123,7 @@ TEST(ExpressScan, OffsetsAnglesByTheGeometryOfTriangulation) {
         for (int i = 0; i < 360; ++i) {
             text += std::to_string(i) + "," + distance_mm + "\n";
         }
-        FakeHost host(std::make_shared<const World>(std::move(*PolarMap::parse(text, "ring"))));
+        FakeHost host(std::make_shared<const World>(*PolarMap::parse(text, "ring")));
         host.spin_up();
         host.send(protocol::express_scan_request(1).command, express_mode);
         host.run(100ms);

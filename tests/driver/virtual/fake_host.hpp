@@ -24,7 +24,7 @@ inline std::shared_ptr<const World> test_world() {
         text += std::to_string(i / 10) + "." + std::to_string(i % 10) + "," +
                 std::to_string(500 + (i * 7) % 5000) + "\n";
     }
-    return std::make_shared<const World>(std::move(*PolarMap::parse(text, "test")));
+    return std::make_shared<const World>(*PolarMap::parse(text, "test"));
 }
 
 class FakeHost {
