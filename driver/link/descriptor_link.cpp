@@ -106,6 +106,9 @@ DescriptorLink::read_some(std::span<std::uint8_t> into, Deadline deadline) {
     Operation operation(*this, reading_, deadline);
     for (;;) {
         if (const auto reason = operation.reason_to_stop()) {
+            if (*reason == errc::timed_out) {
+                co_return read_what_is_there(into);
+            }
             co_return *reason;
         }
         const auto buffer = asio::buffer(into.data(), into.size());
@@ -121,6 +124,12 @@ DescriptorLink::read_some(std::span<std::uint8_t> into, Deadline deadline) {
             co_return errc::interrupted;
         }
     }
+}
+
+Result<std::size_t> DescriptorLink::read_what_is_there(std::span<std::uint8_t> into) {
+    const auto count = ::read(descriptor_.native_handle(), into.data(), into.size());
+    return count > 0 ? Result<std::size_t>(static_cast<std::size_t>(count))
+                     : error_code(errc::timed_out);
 }
 
 asio::awaitable<Result<void>>

@@ -38,6 +38,11 @@ private:
     /// was not meant begins again, which loses nothing.
     void cancel_pending();
 
+    /// The last look after a deadline: bytes that came before it may not have been announced yet
+    /// (the kernel hands them to a terminal's reader in the background, and this thread may have
+    /// been busy). Errors: errc::timed_out if there are none.
+    Result<std::size_t> read_what_is_there(std::span<std::uint8_t> into);
+
     boost::asio::posix::stream_descriptor descriptor_;
     std::uint32_t baud_;
     Direction reading_;

@@ -32,7 +32,7 @@ public:
         case errc::baud_not_supported:
             return "the adapter cannot run at this baud rate";
         case errc::io_error:
-            return "the system could not read or write the port";
+            return "the port could not be opened";
         }
         return "unknown link error " + std::to_string(value);
     }

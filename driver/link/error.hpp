@@ -18,7 +18,7 @@ enum class errc : std::uint8_t {
     port_busy,           ///< someone else holds the port
     not_a_serial_port,   ///< a file, a directory or another kind of device
     baud_not_supported,  ///< the adapter cannot run at this speed
-    io_error,            ///< the system reported something else
+    io_error,            ///< opening failed for another reason, which the problem tells
 };
 
 /// The category of errc, "sweepcast.link"; its messages are fit for an operator.

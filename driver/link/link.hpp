@@ -30,7 +30,7 @@ public:
     /// `into` is empty). Bytes that arrive at the very moment of the deadline, of an interrupt or
     /// of a cancellation are delivered, never lost.
     /// Errors: errc::timed_out, errc::interrupted (also if the coroutine was cancelled meanwhile),
-    /// errc::disconnected, errc::io_error.
+    /// errc::disconnected, or else the system's own code.
     [[nodiscard]] virtual boost::asio::awaitable<Result<std::size_t>>
     read_some(std::span<std::uint8_t> into, Deadline deadline) = 0;
 
@@ -46,7 +46,7 @@ public:
 
     /// Asserts or releases DTR, which on an A1 is the motor: it runs while DTR is released
     /// (protocol.md 5).
-    /// Errors: errc::no_modem_lines, errc::disconnected, errc::io_error.
+    /// Errors: errc::no_modem_lines, errc::disconnected, or else the system's own code.
     virtual Result<void> set_dtr(bool asserted) = 0;
 
     /// Throws away what has arrived and was not read yet. Returns at once.
