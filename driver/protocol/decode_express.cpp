@@ -68,8 +68,7 @@ std::size_t ExpressDecoder::search(std::span<const std::uint8_t> bytes, Decoded&
 }
 
 void ExpressDecoder::lose_step(CapsuleBytes bytes, Decoded& out) {
-    damage_.emplace();
-    damage_->sync_followed = opens_capsule(bytes[0], bytes[1]);
+    damage_ = Damage{.sync_followed = opens_capsule(bytes[0], bytes[1])};
     if (damage_->sync_followed) {
         out.events.push_back({out.samples.size(), DecodeEventKind::checksum_error});
     }
@@ -112,7 +111,7 @@ void ExpressDecoder::accept(CapsuleBytes bytes, SampleTime arrival, Decoded& out
     if (held_) {
         finish_held(start, out);
     } else {
-        held_.emplace();
+        held_ = Held{};
     }
     damage_.reset();
     std::copy(bytes.begin(), bytes.end(), held_->bytes.begin());
