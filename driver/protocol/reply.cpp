@@ -5,6 +5,7 @@
 #include "driver/protocol/wire.hpp"
 
 #include <algorithm>
+#include <string_view>
 
 namespace sweepcast::protocol {
 namespace {
@@ -88,7 +89,7 @@ std::string model_name(std::uint8_t model) {
 }
 
 std::string serial_text(const std::array<std::uint8_t, 16>& serial) {
-    constexpr char digits[] = "0123456789ABCDEF";
+    constexpr std::string_view digits = "0123456789ABCDEF";
     std::string text;
     text.reserve(2 * serial.size());
     for (const auto byte : serial) {
