@@ -60,6 +60,8 @@ class Page {
   private sweep: Sweep | undefined;
   private sequence = 0n;
   private arrivedS = 0;
+  /// The sweep came since the connection was opened and the lidar began to scan.
+  private fresh = false;
   private colourRange = 0;
   private counter = new SequenceCounter();
   private meter = new RateMeter();
@@ -100,6 +102,7 @@ class Page {
   private connectionChanged(state: ConnectionState): void {
     if (state.kind !== "open") {
       this.subscribed = "";
+      this.fresh = false;
       this.counter.resume();
     }
     this.banner.show(state, performance.now());
@@ -146,6 +149,7 @@ class Page {
     const before = this.lidar;
     this.lidar = this.lidars.choose(this.settings.lidar, before?.id ?? "");
     if (this.lidar?.number !== before?.number) this.clear();
+    if (this.lidar?.state !== Lidar_State.SCANNING) this.fresh = false;
     // Keep the present id in the address, so that the link still works after a restart.
     if (this.lidar && this.lidars.find(this.settings.lidar)) this.settings.lidar = this.lidar.id;
     this.remember();
@@ -162,6 +166,7 @@ class Page {
 
   private clear(): void {
     this.sweep = undefined;
+    this.fresh = false;
     this.counter = new SequenceCounter();
     this.meter = new RateMeter();
     this.scene.show(undefined);
@@ -181,6 +186,7 @@ class Page {
     const now = seconds();
     const wasLive = this.live();
     this.arrivedS = now;
+    this.fresh = true;
     this.sequence = frame.sequence;
     this.counter.see(frame.sequence);
     this.meter.tick(now);
@@ -192,7 +198,7 @@ class Page {
   private live(): boolean {
     return (
       this.connection.state.kind === "open" &&
-      this.sweep !== undefined &&
+      this.fresh &&
       this.lidar?.state === Lidar_State.SCANNING &&
       seconds() - this.arrivedS < STALE_AFTER_S
     );
