@@ -15,28 +15,22 @@ using Bytes = std::vector<std::uint8_t>;
 using protocol::Command;
 using protocol::ReplyType;
 
-void append_le16(Bytes& out, std::uint16_t value) {
+Bytes le16(std::uint16_t value) {
     std::array<std::uint8_t, 2> bytes{};
     protocol::store_le16(bytes, value);
-    out.insert(out.end(), bytes.begin(), bytes.end());
-}
-
-void append_le32(Bytes& out, std::uint32_t value) {
-    std::array<std::uint8_t, 4> bytes{};
-    protocol::store_le32(bytes, value);
-    out.insert(out.end(), bytes.begin(), bytes.end());
-}
-
-Bytes le16(std::uint16_t value) {
-    Bytes out;
-    append_le16(out, value);
-    return out;
+    return {bytes.begin(), bytes.end()};
 }
 
 Bytes le32(std::uint32_t value) {
-    Bytes out;
-    append_le32(out, value);
-    return out;
+    std::array<std::uint8_t, 4> bytes{};
+    protocol::store_le32(bytes, value);
+    return {bytes.begin(), bytes.end()};
+}
+
+Bytes joined(std::span<const std::uint8_t> first, std::span<const std::uint8_t> second) {
+    Bytes both(first.size() + second.size());
+    std::copy(second.begin(), second.end(), std::copy(first.begin(), first.end(), both.begin()));
+    return both;
 }
 
 Bytes zero_terminated(std::string_view text) {
@@ -51,9 +45,7 @@ Bytes packet(ReplyType type, std::span<const std::uint8_t> payload) {
         .many = false,
         .type = static_cast<std::uint8_t>(type),
     });
-    Bytes out(descriptor.begin(), descriptor.end());
-    out.insert(out.end(), payload.begin(), payload.end());
-    return out;
+    return joined(descriptor, payload);
 }
 
 // SCAN is the first mode; "express" here is the first one that is streamed in 0x82 capsules.
@@ -76,10 +68,8 @@ std::optional<Bytes> conf_answer(const Persona& persona, std::span<const std::ui
         return std::nullopt;
     }
     const auto type = protocol::load_le32(payload.first<4>());
-    auto body = le32(type);
     const auto value = conf_value(persona, type, payload.subspan(4));
-    body.insert(body.end(), value.begin(), value.end());
-    return packet(ReplyType::lidar_conf, body);
+    return packet(ReplyType::lidar_conf, joined(le32(type), value));
 }
 
 // Nothing can be set on the scanners played so far.
@@ -88,9 +78,7 @@ std::optional<Bytes> set_conf_answer(std::span<const std::uint8_t> payload) {
     if (payload.size() < 4) {
         return std::nullopt;
     }
-    auto body = le32(protocol::load_le32(payload.first<4>()));
-    append_le32(body, not_supported);
-    return packet(ReplyType::set_lidar_conf, body);
+    return packet(ReplyType::set_lidar_conf, joined(payload.first<4>(), le32(not_supported)));
 }
 
 Bytes mode_value(const ScanMode& mode, std::uint32_t type) {
@@ -111,11 +99,8 @@ Bytes mode_value(const ScanMode& mode, std::uint32_t type) {
 std::vector<std::uint8_t>
 conf_value(const Persona& persona, std::uint32_t type, std::span<const std::uint8_t> arguments) {
     switch (type) {
-    case 0x01: {
-        auto value = le16(persona.rotation.desired_rpm);
-        append_le16(value, persona.rotation.pwm_reference);
-        return value;
-    }
+    case 0x01:
+        return joined(le16(persona.rotation.desired_rpm), le16(persona.rotation.pwm_reference));
     case 0x04:
         return le16(persona.rotation.min_rpm);
     case 0x05:

@@ -19,9 +19,9 @@ using namespace std::chrono_literals;
 
 namespace {
 
-// While a host waits for measurements it gets them in pieces of this time: finer than any driver
-// can tell from a real adapter, and coarse enough to cost no more than about a percent of a core.
-constexpr auto shortest_step = 1ms;
+// Measurements are written in pieces of this time: less than the buffering of any real USB adapter,
+// and coarse enough to cost no more than a few percent of a core.
+constexpr auto shortest_step = 2ms;
 
 // Nothing announces that a host has opened the port, so this is looked for.
 constexpr auto host_poll_period = 20ms;
