@@ -43,10 +43,16 @@ test("once is no rate", () => {
   assert.equal(meter.rate(1), undefined);
 });
 
+test("a burst is no rate", () => {
+  const meter = new RateMeter();
+  for (let k = 0; k < 10; ++k) meter.tick(k * 0.01);
+  assert.equal(meter.rate(0.1), undefined);
+});
+
 test("what has ended has no rate", () => {
   const meter = new RateMeter();
   meter.tick(1);
-  meter.tick(1.1);
-  assert.ok(meter.rate(1.2) !== undefined);
-  assert.equal(meter.rate(4.2), undefined);
+  meter.tick(2);
+  assert.equal(meter.rate(2.1), 1);
+  assert.equal(meter.rate(5.1), undefined);
 });

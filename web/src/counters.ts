@@ -20,6 +20,8 @@ export class SequenceCounter {
 }
 
 const WINDOW_S = 3;
+/// Frames arrive in bursts, so less than this says nothing.
+const LEAST_S = 1;
 
 /// Frequency of something that happens again and again, over the last seconds.
 export class RateMeter {
@@ -35,8 +37,8 @@ export class RateMeter {
   rate(now: number): number | undefined {
     const first = this.times[0];
     const last = this.times[this.times.length - 1];
-    if (first === undefined || last === undefined || last === first) return undefined;
-    if (now - last > WINDOW_S) return undefined;
+    if (first === undefined || last === undefined) return undefined;
+    if (last - first < LEAST_S || now - last > WINDOW_S) return undefined;
     return (this.times.length - 1) / (last - first);
   }
 }

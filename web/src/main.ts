@@ -219,7 +219,7 @@ class Page {
     const connected = this.connection.state.kind === "open";
     this.panel.showSince(connected ? this.lidar : undefined, Date.now() / 1000);
     this.panel.showMeasured({
-      sweep: this.sweep,
+      sweep: live ? this.sweep : undefined,
       sweepsPerS: rate,
       missed: this.counter.missed,
     });

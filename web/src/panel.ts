@@ -6,6 +6,7 @@ import type { Sweep } from "./sweep";
 import { decimal, duration, NONE, whole } from "./words";
 
 export interface Measured {
+  /// What the lidar sees now; undefined if that is not known.
   sweep: Sweep | undefined;
   sweepsPerS: number | undefined;
   missed: number;
@@ -64,10 +65,9 @@ export class Panel {
 
   /// Shows the stream's figures; those of a sweep are dashes while none comes.
   showMeasured({ sweep, sweepsPerS, missed }: Measured): void {
-    const live = sweepsPerS !== undefined ? sweep : undefined;
-    const rpm = live && live.periodS > 0 ? 60 / live.periodS : undefined;
+    const rpm = sweep && sweep.periodS > 0 ? 60 / sweep.periodS : undefined;
     setText(this.values.rpm, decimal(rpm, 0));
-    const points = live && `${whole(live.x.length)} / ${whole(live.samples)}`;
+    const points = sweep && `${whole(sweep.x.length)} / ${whole(sweep.samples)}`;
     setText(this.values.points, points ?? NONE);
     setText(this.values.rate, decimal(sweepsPerS, 1));
     setText(this.values.missed, whole(missed));
