@@ -10,7 +10,8 @@ import tomllib
 from pathlib import Path
 
 INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"(?P<ours>[^"]+)"|<(?P<theirs>[^>]+)>|(?P<other>.*))')
-FOLDERS = ("driver", "server", "tests")
+FOLDERS = ("driver", "server", "tests", "web")
+NOT_OURS = "node_modules"
 
 
 def load_table(path=Path(__file__).with_name("layering.toml")):
@@ -93,7 +94,8 @@ def faults_in(path, root, table):
 
 def violations(root, table):
     """All violations in the tree `root`, each as 'path:line: sentence', in order of path."""
-    files = sorted(p for folder in FOLDERS for p in (root / folder).rglob("*") if p.suffix in (".cpp", ".hpp"))
+    found = (path for folder in FOLDERS for path in (root / folder).rglob("*.[ch]pp"))
+    files = sorted(path for path in found if NOT_OURS not in path.parts)
     return [
         f"{path.relative_to(root).as_posix()}:{line}: {fault}" for path in files for line, fault in faults_in(path, root, table)
     ]
