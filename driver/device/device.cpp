@@ -152,7 +152,8 @@ Device::settle(std::function<bool()> reached, std::chrono::milliseconds limit) {
         if (failed && state_version_ != version) {
             co_return Problem{make_error_code(errc::not_ready), state_.cause, state_.hint};
         }
-        if (!co_await changed_.wait_until(deadline)) {
+        const bool changed = co_await changed_.wait_until(deadline);
+        if (!changed) {
             co_return advice(errc::not_ready);
         }
     }
@@ -229,14 +230,13 @@ asio::awaitable<Result<void>> Device::scan(Conversation& talk) {
     if (auto on = co_await set_motor(talk, true); !on) {
         co_return on;
     }
-    const auto descriptor = co_await talk.open_stream(scan_request(*mode), descriptor_limit);
-    const auto ended = descriptor ? co_await deliver_sweeps(
-                                        talk,
-                                        static_cast<protocol::AnswerType>(descriptor->type),
-                                        *mode
-                                    )
-                                  : Result<void>(descriptor.error());
-
+    const auto request = scan_request(*mode);
+    const auto descriptor = co_await talk.open_stream(request, descriptor_limit);
+    auto ended = Result<void>(descriptor.error());
+    if (descriptor) {
+        const auto type = static_cast<protocol::AnswerType>(descriptor->type);
+        ended = co_await deliver_sweeps(talk, type, *mode);
+    }
     const bool line_is_up =
         ended.error() == link::errc::interrupted || ended.error() == link::errc::timed_out;
     if (!line_is_up) {
@@ -300,7 +300,8 @@ Device::deliver_sweeps(Conversation& talk, protocol::AnswerType type, const Scan
 asio::awaitable<Result<void>> Device::reboot(Conversation& talk) {
     log_->info("resetting the lidar");
     set_phase(Phase::identifying, {{}, "resetting", ""});
-    if (auto sent = co_await talk.send({protocol::Command::reset, {}}); !sent) {
+    const protocol::Request reset{protocol::Command::reset, {}};
+    if (auto sent = co_await talk.send(reset); !sent) {
         co_return sent;
     }
     const auto deadline = Clock::now() + boot_limit;
@@ -325,7 +326,8 @@ asio::awaitable<Result<void>> Device::reboot(Conversation& talk) {
 asio::awaitable<Result<void>> Device::set_motor(Conversation& talk, bool on) {
     auto switched = link_->set_dtr(!on);
     if (!switched && switched.error() == link::errc::no_modem_lines) {
-        switched = co_await talk.send(protocol::set_motor_pwm_request(on ? usual_pwm : 0));
+        const auto request = protocol::set_motor_pwm_request(on ? usual_pwm : 0);
+        switched = co_await talk.send(request);
     }
     if (switched) {
         asio::steady_timer pause(co_await asio::this_coro::executor, motor_pause);

@@ -38,7 +38,7 @@ struct DeviceOptions {
     /// Start scanning as soon as the device is there.
     bool scan_at_once{true};
     /// Name of the scan mode; empty: the fastest.
-    std::string mode;
+    std::string mode{};
     /// How long to wait after a failure before the next attempt.
     std::chrono::milliseconds retry_delay{2000};
 };
@@ -80,7 +80,7 @@ private:
     /// What the users of the lidar want of it. `command` counts the changes of mind.
     struct Wanted {
         bool scanning{};
-        std::string mode;
+        std::string mode{};
         bool reset{};
         bool shutdown{};
         std::uint64_t command{};

@@ -183,7 +183,8 @@ asio::awaitable<void> VirtualLidar::run() {
         co_await stopped_.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
     }
     tasks.cancel();
-    while (!co_await tasks.join(1s)) {
+    for (bool ended = false; !ended;) {
+        ended = co_await tasks.join(1s);
     }
     link_.reset();
     logger_->info("{} stopped", port());

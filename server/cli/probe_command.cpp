@@ -9,7 +9,7 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/use_future.hpp>
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <memory>
 #include <string>
@@ -40,7 +40,10 @@ void print(const std::string& port, const device::Identity& identity) {
     fmt::print("firmware  {}.{:02}\n", info.firmware_major, info.firmware_minor);
     fmt::print("hardware  {}\n", info.hardware);
     fmt::print("health    {}", text(identity.health.status));
-    fmt::print(identity.health.code != 0 ? ", code {:#06x}\n" : "\n", identity.health.code);
+    fmt::print(
+        "{}\n",
+        identity.health.code != 0 ? fmt::format(", code {:#06x}", identity.health.code) : ""
+    );
     for (const auto& mode : identity.modes) {
         fmt::print("mode      {}: {:.0f} samples/s\n", mode.name, mode.samples_per_second());
     }

@@ -14,6 +14,7 @@
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/use_future.hpp>
 #include <fmt/format.h>
+#include <google/protobuf/stubs/logging.h>
 
 #include <csignal>
 #include <cstdio>
@@ -39,27 +40,19 @@ struct ServeArguments {
 
 constexpr const char* default_virtual = "virtual:a1m8";
 
+/// The ports where a lidar answers.
+std::vector<std::string> find_lidars(const std::shared_ptr<spdlog::logger>& log) {
+    asio::io_context context;
+    auto found =
+        asio::co_spawn(context, device::discover(context.get_executor(), log), asio::use_future);
+    context.run();
+    return found.get();
+}
+
 /// The lidars the user named; else those that are found; else a virtual one.
 Result<std::vector<gateway::LidarUrl>, Problem>
 choose_lidars(const std::vector<std::string>& named, const std::shared_ptr<spdlog::logger>& log) {
-    auto texts = named;
-    if (texts.empty()) {
-        asio::io_context context;
-        auto found = asio::co_spawn(
-            context,
-            device::discover(context.get_executor(), log),
-            asio::use_future
-        );
-        context.run();
-        texts = found.get();
-    }
-    if (texts.empty()) {
-        log->warn(
-            "no lidar found: starting a virtual one. Name a port with --lidar, e.g. --lidar "
-            "/dev/ttyUSB0"
-        );
-        texts.emplace_back(default_virtual);
-    }
+    const auto texts = named.empty() ? find_lidars(log) : named;
     std::vector<gateway::LidarUrl> urls;
     for (const auto& text : texts) {
         auto url = gateway::parse_lidar_url(text);
@@ -67,6 +60,14 @@ choose_lidars(const std::vector<std::string>& named, const std::shared_ptr<spdlo
             return url.error();
         }
         urls.push_back(std::move(*url));
+    }
+    if (urls.empty()) {
+        log->warn(
+            "no lidar found: starting a virtual one. Name a port with --lidar, e.g. --lidar "
+            "/dev/ttyUSB0"
+        );
+        auto& stand_in = urls.emplace_back(*gateway::parse_lidar_url(default_virtual));
+        stand_in.is_stand_in = true;
     }
     return urls;
 }
@@ -117,6 +118,7 @@ int serve(const ServeArguments& arguments) {
         );
     }
     std::signal(SIGPIPE, SIG_IGN);  // a client that goes is an error of a write, not of the program
+    google::protobuf::SetLogHandler(nullptr);  // it would let any client write to our log
     auto options = to_options(arguments);
     if (!options) {
         return report(options.error());

@@ -12,7 +12,9 @@ Result<StreamUrl, Problem> parse_stream_url(std::string_view text) {
         fmt::format("\"{}\" is not a stream's URL", text),
         "write tcp://HOST:PORT or ws://HOST:PORT/api/v1/stream, for example tcp://127.0.0.1:8081"};
     const auto parsed = boost::urls::parse_uri(text);
-    if (!parsed || parsed->host().empty()) {
+    // Boost.URL 1.81 takes the "x" of "tcp://robot:x" for a path.
+    const bool odd_path = parsed && !parsed->encoded_path().empty() && !parsed->is_path_absolute();
+    if (!parsed || parsed->host().empty() || odd_path) {
         return bad;
     }
     StreamUrl url;

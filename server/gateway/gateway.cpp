@@ -45,7 +45,8 @@ async::TaskGroup::OnFailure log_failure(std::shared_ptr<spdlog::logger> log) {
 /// Ends a worker's sessions: those that do not take the farewell in time are cut off.
 asio::awaitable<bool> end_tasks(async::Worker& worker, hub::LocalHub& hub) {
     hub.close_all(stream::closing_message(farewell), farewell);
-    if (co_await worker.tasks().join(sessions_end_within)) {
+    const bool all_ended = co_await worker.tasks().join(sessions_end_within);
+    if (all_ended) {
         co_return true;
     }
     worker.tasks().cancel();
@@ -63,7 +64,8 @@ asio::awaitable<api::LidarControl::Outcome>
 command(ManagedLidar& lidar, asio::awaitable<Result<void, Problem>> order) {
     auto obey = [](ManagedLidar& obeying, asio::awaitable<Result<void, Problem>> what
                 ) -> asio::awaitable<api::LidarControl::Outcome> {
-        if (const auto done = co_await std::move(what); !done) {
+        const auto done = co_await std::move(what);
+        if (!done) {
             co_return done.error();
         }
         co_return obeying.snapshot();
@@ -184,7 +186,7 @@ Result<void, Problem> Gateway::add_lidars(const MakeLogger& make_logger) {
 /// Where a lidar is and how to open it; starts the virtual ones.
 Result<LidarPlace, Problem>
 Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make_logger) {
-    LidarPlace place{number, url.text, port_name(url), false, {}};
+    LidarPlace place{number, url.text, port_name(url), false, url.is_stand_in, {}};
     std::string path;
     if (const auto* wanted = std::get_if<VirtualLidarUrl>(&url.where)) {
         auto port = virtual_lidars_.add(*wanted, number, make_logger(place.port_name));
@@ -226,7 +228,8 @@ void Gateway::stop_lidars() {
     }
     const auto deadline = std::chrono::steady_clock::now() + lidars_end_within;
     for (auto& lidar : lidars_) {
-        if (lidar->stopped().wait_until(deadline) != std::future_status::ready) {
+        if (lidar->started() &&
+            lidar->stopped().wait_until(deadline) != std::future_status::ready) {
             log_->warn("a lidar did not stop in time; its motor may still turn");
         }
     }

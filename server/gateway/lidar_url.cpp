@@ -45,12 +45,12 @@ Result<LidarUrl, Problem> parse_lidar_url(std::string_view text) {
         if (!lidar) {
             return lidar.error();
         }
-        return LidarUrl{std::string(text), std::move(*lidar)};
+        return LidarUrl{std::string(text), std::move(*lidar), false};
     }
     if (text.empty() || text.find("://") != std::string_view::npos) {
         return bad_url(text, "not a port or URL known here");
     }
-    return LidarUrl{std::string(text), SerialLidar{std::string(text)}};
+    return LidarUrl{std::string(text), SerialLidar{std::string(text)}, false};
 }
 
 std::string port_name(const LidarUrl& url) {

@@ -23,6 +23,8 @@ struct VirtualLidarUrl {
 struct LidarUrl {
     std::string text;  ///< as the user wrote it
     std::variant<SerialLidar, VirtualLidarUrl> where;
+    /// Nobody asked for it: it stands in for a lidar that was not found.
+    bool is_stand_in{};
 };
 
 /// Reads "/dev/ttyUSB0" (any path) or "virtual:a1m8", "virtual:a1m8?world=FILE".

@@ -28,6 +28,7 @@ ManagedLidar::ManagedLidar(
     , device_(worker.executor(), place_.open_link, std::move(options), *this, log_) {}
 
 void ManagedLidar::start() {
+    started_ = true;
     asio::post(worker_.executor(), [this] {
         on_state(device_.state());
         worker_.tasks().spawn(live());
@@ -52,6 +53,7 @@ void ManagedLidar::on_state(const device::DeviceState& state) {
     snapshot->port_name = place_.port_name;
     snapshot->url = place_.url;
     snapshot->is_virtual = place_.is_virtual;
+    snapshot->is_stand_in = place_.is_stand_in;
     snapshot->state = state;
     const auto wished =
         state.info ? protocol::short_serial_text(state.info->serial) : place_.port_name;

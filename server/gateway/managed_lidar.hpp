@@ -22,6 +22,7 @@ struct LidarPlace {
     std::string url;
     std::string port_name;
     bool is_virtual{};
+    bool is_stand_in{};
     device::OpenLink open_link;
 };
 
@@ -43,6 +44,7 @@ public:
     void shut_down();
     /// Becomes ready when the life begun by start() has ended.
     [[nodiscard]] std::future<void>& stopped() { return stopped_; }
+    [[nodiscard]] bool started() const { return started_; }
 
     [[nodiscard]] async::Worker& worker() { return worker_; }
     [[nodiscard]] device::Device& device() { return device_; }
@@ -60,6 +62,7 @@ private:
     std::shared_ptr<spdlog::logger> log_;
     frame::FrameEncoder encoder_;
     hub::LidarSnapshotPtr snapshot_;
+    bool started_{};
     std::promise<void> ended_;
     std::future<void> stopped_;
     device::Device device_;

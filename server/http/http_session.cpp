@@ -132,21 +132,25 @@ public:
                 asio::as_tuple(asio::use_awaitable)
             );
             if (failed) {
-                if (auto response = unreadable(failed)) {
-                    co_await write(to_beast(std::move(*response), 11, false, false));
+                if (auto problem = unreadable(failed)) {
+                    auto response = to_beast(std::move(*problem), 11, false, false);
+                    co_await write(std::move(response));
                 }
                 break;
             }
             auto request = parser.release();
             if (beast::websocket::is_upgrade(request)) {
-                if (co_await upgrade(std::move(request))) {
+                const bool became_a_stream = co_await upgrade(std::move(request));
+                if (became_a_stream) {
                     co_return;
                 }
                 break;
             }
             // A command takes as long as the lidar takes to obey, which the device bounds.
             stream_.expires_never();
-            keep_alive = co_await write(co_await answer(request)) && request.keep_alive();
+            auto response = co_await answer(request);
+            const bool written = co_await write(std::move(response));
+            keep_alive = written && request.keep_alive();
         }
         error_code ignored;  // the client may have gone first
         stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
@@ -220,7 +224,8 @@ private:
     asio::awaitable<bool> upgrade(BeastRequest request) {
         auto settings = session_settings(request);
         if (!settings) {
-            co_await write(to_beast(settings.error(), request.version(), false, false));
+            auto refusal = to_beast(settings.error(), request.version(), false, false);
+            co_await write(std::move(refusal));
             co_return false;
         }
         stream_.expires_never();  // from here on the WebSocket has deadlines of its own

@@ -19,6 +19,8 @@ struct LidarSnapshot {
     std::string port_name;
     std::string url;
     bool is_virtual{};
+    /// A virtual one, started because no lidar was found.
+    bool is_stand_in{};
     device::DeviceState state;
 };
 

@@ -67,6 +67,7 @@ void to_message(const hub::LidarSnapshot& lidar, v1::Lidar& message) {
     message.set_id(lidar.id);
     message.set_url(lidar.url);
     message.set_is_virtual(lidar.is_virtual);
+    message.set_is_stand_in(lidar.is_stand_in);
     const auto& state = lidar.state;
     message.set_state(to_state(state.phase));
     set_time(state.since, *message.mutable_since());

@@ -5,7 +5,7 @@ import { create } from "@bufbuild/protobuf";
 import { LidarSchema, ScanModeSchema } from "../../web/gen/sweepcast/v1/lidar_pb";
 import { Lidar_State } from "../../web/src/lidars";
 import { sweepOf } from "../../web/src/sweep";
-import { decimal, duration, metres, modeWords, summary } from "../../web/src/words";
+import { decimal, duration, metres, modeWords, summary, virtualWords } from "../../web/src/words";
 import { scanOf } from "./scan_builder";
 
 const lidar = create(LidarSchema, { id: "a", state: Lidar_State.SCANNING });
@@ -76,4 +76,15 @@ test("without a connection the state is not claimed to be known", () => {
     summary(false, lidar, sweep, false, undefined),
     /^Not connected\. In the last sweep/,
   );
+});
+
+test("a virtual lidar that stands in for one says that no scanner was found", () => {
+  const standIn = create(LidarSchema, { isVirtual: true, isStandIn: true });
+  assert.match(virtualWords(standIn), /no scanner was found/);
+});
+
+test("a virtual lidar that was asked for does not say so", () => {
+  assert.equal(virtualWords(create(LidarSchema, { isVirtual: true })), "this is a simulated room.");
+  assert.equal(virtualWords(lidar), "");
+  assert.equal(virtualWords(undefined), "");
 });

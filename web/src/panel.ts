@@ -3,7 +3,7 @@ import { element, setText, showText } from "./dom";
 import { stateWords, type Tone } from "./lidar_state";
 import { Lidar_State, type Lidar } from "./lidars";
 import type { Sweep } from "./sweep";
-import { decimal, duration, NONE, whole } from "./words";
+import { decimal, duration, NONE, virtualWords, whole } from "./words";
 
 export interface Measured {
   /// What the lidar sees now; undefined if that is not known.
@@ -29,6 +29,7 @@ export class Panel {
   private readonly cause = element("cause", HTMLElement);
   private readonly hint = element("hint", HTMLElement);
   private readonly virtualNote = element("virtual-note", HTMLElement);
+  private readonly virtualWords = element("virtual-words", HTMLElement);
   private readonly values = {
     rpm: element("rpm", HTMLElement),
     points: element("points-per-sweep", HTMLElement),
@@ -51,6 +52,7 @@ export class Panel {
     showText(this.cause, known?.cause ?? (connected ? "The gateway knows of no lidar." : ""));
     showText(this.hint, known?.hint ?? "");
     this.virtualNote.hidden = !lidar?.isVirtual;
+    setText(this.virtualWords, virtualWords(lidar));
     setText(this.values.model, lidar?.device?.model || NONE);
     setText(this.values.serial, lidar?.device?.serialNumber || NONE);
     setText(this.values.firmware, lidar?.device?.firmware || NONE);

@@ -60,3 +60,9 @@ export function summary(
   const rate = sweepsPerS === undefined ? "" : ` ${sweepsPerS.toFixed(1)} sweeps/s.`;
   return `${obstacle[0]!.toUpperCase()}${obstacle.slice(1)}${rate}`;
 }
+
+/// What to know of a virtual lidar; empty for a real one.
+export function virtualWords(lidar: Lidar | undefined): string {
+  if (!lidar?.isVirtual) return "";
+  return lidar.isStandIn ? "no scanner was found, this is a simulated room." : "this is a simulated room.";
+}

@@ -1,0 +1,319 @@
+// Device: each test drives one lidar's life on an io_context of its own and waits for events, never
+// for a while.
+#include "driver/device/device.hpp"
+
+#include "driver/device/error.hpp"
+#include "fake_scanner.hpp"
+#include "memory_link.hpp"
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/io_context.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <spdlog/logger.h>
+
+#include <chrono>
+#include <exception>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sweepcast::device {
+namespace {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+using protocol::Command;
+using testing::Contains;
+using testing::HasSubstr;
+
+constexpr auto patience = 10s;
+
+class DeviceTest : public testing::Test, public DeviceObserver {
+public:  // the tests' coroutines are lambdas, which inherit no access
+    void on_state(const DeviceState& state) override {
+        phases.push_back(state.phase);
+        changed.notify();
+    }
+    void on_sweep(CapturedSweep sweep) override {
+        sweeps.push_back(std::move(sweep));
+        changed.notify();
+    }
+
+    Device& make_device(DeviceOptions options = {}) {
+        options.retry_delay = 1ms;
+        auto open = [this]() -> Result<std::unique_ptr<link::Link>, Problem> {
+            ++opened;
+            if (open_problem) {
+                return *open_problem;
+            }
+            return std::unique_ptr<link::Link>(std::make_unique<MemoryLink>(line));
+        };
+        device = std::make_unique<Device>(context.get_executor(), open, options, *this, log);
+        return *device;
+    }
+
+    /// Runs the device's life beside `script`, and ends it when the script has.
+    void play(asio::awaitable<void> script) {
+        spawn(device->run());
+        spawn([](DeviceTest& test, asio::awaitable<void> body) -> asio::awaitable<void> {
+            co_await std::move(body);
+            test.device->shut_down();
+        }(*this, std::move(script)));
+        context.run_for(patience);
+        ASSERT_TRUE(context.stopped()) << "the device's life did not end";
+    }
+
+    /// Waits until `reached` holds; fails the test if it does not come to that.
+    template <class Condition>
+    asio::awaitable<void> until(Condition reached) {
+        const auto deadline = std::chrono::steady_clock::now() + patience / 2;
+        while (!reached()) {
+            const bool woken = co_await changed.wait_until(deadline);
+            if (!woken) {
+                ADD_FAILURE() << "it did not come to that; the phase is "
+                              << name(device->state().phase);
+                co_return;
+            }
+        }
+    }
+
+    asio::awaitable<void> until_phase(Phase phase) {
+        return until([this, phase] { return device->state().phase == phase; });
+    }
+
+    void spawn(asio::awaitable<void> task) {
+        asio::co_spawn(context, std::move(task), [](std::exception_ptr failure) {
+            if (failure) {
+                std::rethrow_exception(failure);
+            }
+        });
+    }
+
+    asio::io_context context;
+    Line line{context.get_executor()};
+    FakeScanner scanner{line};
+    async::Notifier changed{context.get_executor()};
+    std::shared_ptr<spdlog::logger> log = std::make_shared<spdlog::logger>("test");
+    std::unique_ptr<Device> device;
+    std::vector<Phase> phases;
+    std::vector<CapturedSweep> sweeps;
+    std::optional<Problem> open_problem;
+    int opened{};
+};
+
+TEST_F(DeviceTest, IdentifiesThenScansThenDeliversSweeps) {
+    make_device();
+    play(until([this] { return sweeps.size() >= 2; }));
+
+    ASSERT_GE(phases.size(), 3U);
+    EXPECT_EQ(phases[0], Phase::identifying);
+    EXPECT_EQ(phases[1], Phase::starting);
+    EXPECT_EQ(phases[2], Phase::scanning);
+    ASSERT_GE(sweeps.size(), 2U);
+    EXPECT_EQ(sweeps[0].sweep.samples.size(), 360U);
+    EXPECT_EQ(sweeps[0].sequence, 1U);
+    EXPECT_EQ(sweeps[1].sequence, 2U);
+    EXPECT_EQ(sweeps[0].mode, "Express");
+}
+
+TEST_F(DeviceTest, TellsWhoTheLidarIs) {
+    make_device();
+    play(until_phase(Phase::scanning));
+
+    ASSERT_TRUE(device->state().info);
+    EXPECT_EQ(*device->state().info, scanner.info);
+    ASSERT_EQ(device->state().modes.size(), 2U);
+    EXPECT_EQ(device->state().modes[0].name, "Standard");
+    EXPECT_EQ(device->state().modes[1].name, "Express");
+}
+
+TEST_F(DeviceTest, EndsWithTheScanStoppedAndTheMotorOff) {
+    make_device();
+    play(until_phase(Phase::scanning));
+
+    EXPECT_EQ(scanner.requests.back().command, Command::stop);
+    EXPECT_EQ(line.dtr, true);  // asserted: an A1's motor is off
+    EXPECT_EQ(phases.back(), Phase::disconnected);
+}
+
+TEST_F(DeviceTest, ReleasesDtrSoThatTheMotorTurnsWhileScanning) {
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);
+        EXPECT_EQ(test.line.dtr, false);
+    }(*this));
+}
+
+TEST_F(DeviceTest, SwitchesTheMotorByRequestWhereTheLineHasNoDtr) {
+    line.has_dtr = false;
+    make_device();
+    play(until_phase(Phase::scanning));
+
+    EXPECT_THAT(scanner.requests, Contains(protocol::set_motor_pwm_request(660)));
+    EXPECT_EQ(scanner.requests.back(), protocol::set_motor_pwm_request(0));
+}
+
+TEST_F(DeviceTest, StaysIdleWhenNotToldToScan) {
+    make_device({.scan_at_once = false});
+    play(until_phase(Phase::idle));
+
+    EXPECT_EQ(scanner.count(Command::express_scan), 0U);
+    EXPECT_EQ(line.dtr, true);
+}
+
+TEST_F(DeviceTest, StopAndStartFollowEachOther) {
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);
+        const auto stopped = co_await test.device->stop();
+        EXPECT_TRUE(stopped);
+        EXPECT_EQ(test.device->state().phase, Phase::idle);
+        EXPECT_EQ(test.line.dtr, true);
+        const auto started = co_await test.device->start("");
+        EXPECT_TRUE(started);
+        EXPECT_EQ(test.device->state().phase, Phase::scanning);
+        EXPECT_EQ(test.line.dtr, false);
+    }(*this));
+    EXPECT_EQ(scanner.count(Command::express_scan), 2U);
+}
+
+TEST_F(DeviceTest, ChangesTheModeOfARunningScan) {
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);
+        const auto started = co_await test.device->start("standard");
+        EXPECT_TRUE(started);
+        EXPECT_EQ(test.device->state().mode, "Standard");
+    }(*this));
+    EXPECT_EQ(scanner.count(Command::scan), 1U);
+}
+
+TEST_F(DeviceTest, RefusesAnUnknownModeAndNamesTheKnownOnes) {
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);
+        const auto started = co_await test.device->start("Turbo");
+        EXPECT_FALSE(started);
+        EXPECT_EQ(started.error().code, errc::unknown_mode);
+        EXPECT_THAT(started.error().hint, HasSubstr("Standard, Express"));
+        EXPECT_EQ(test.device->state().phase, Phase::scanning);
+    }(*this));
+}
+
+TEST_F(DeviceTest, SaysWhyAPortDoesNotOpenAndTriesAgain) {
+    open_problem = Problem{make_error_code(errc::no_answer), "no such port", "plug it in"};
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::failed);
+        EXPECT_EQ(test.device->state().cause, "no such port");
+        EXPECT_EQ(test.device->state().hint, "plug it in");
+        test.open_problem.reset();
+        co_await test.until_phase(Phase::scanning);
+        EXPECT_EQ(test.device->state().cause, "");
+    }(*this));
+    EXPECT_GE(opened, 2);
+}
+
+TEST_F(DeviceTest, FailsWithAdviceWhenNothingAnswers) {
+    scanner.answers = false;
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::failed);
+        EXPECT_THAT(test.device->state().cause, HasSubstr("does not answer"));
+        EXPECT_THAT(test.device->state().hint, HasSubstr("power"));
+    }(*this));
+}
+
+TEST_F(DeviceTest, StartTellsWhyAFailedLidarCannotBeStarted) {
+    open_problem = Problem{make_error_code(errc::no_answer), "no such port", "plug it in"};
+    make_device({.scan_at_once = false});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        const auto started = co_await test.device->start("");
+        EXPECT_FALSE(started);
+        EXPECT_EQ(started.error().cause, "no such port");
+    }(*this));
+}
+
+TEST_F(DeviceTest, ComesBackAfterTheCableWasPulled) {
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until([&test] { return test.sweeps.size() >= 2; });
+        const auto last = test.sweeps.back().sequence;
+        test.line.unplug();
+        co_await test.until_phase(Phase::failed);
+        EXPECT_THAT(test.device->state().hint, HasSubstr("cable"));
+        co_await test.until([&test, last] { return test.sweeps.back().sequence > last; });
+    }(*this));
+    EXPECT_EQ(opened, 2);
+}
+
+TEST_F(DeviceTest, ASecondStopChangesNothing) {
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);
+        EXPECT_TRUE(co_await test.device->stop());
+        const auto sent = test.scanner.requests.size();
+        EXPECT_TRUE(co_await test.device->stop());
+        EXPECT_EQ(test.scanner.requests.size(), sent);
+    }(*this));
+}
+
+TEST_F(DeviceTest, ReportsAProtectionStopAndLeavesItByReset) {
+    scanner.health = {protocol::HealthStatus::error, 0x8001};
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::protection_stop);
+        EXPECT_THAT(test.device->state().hint, HasSubstr("reset"));
+        EXPECT_EQ(test.scanner.count(Command::express_scan), 0U);
+        const auto reset = co_await test.device->reset();
+        EXPECT_TRUE(reset);
+        EXPECT_EQ(test.device->state().phase, Phase::scanning);
+    }(*this));
+    EXPECT_EQ(scanner.count(Command::reset), 1U);
+}
+
+TEST_F(DeviceTest, ResetSaysSoWhenTheFaultStays) {
+    scanner.health = {protocol::HealthStatus::error, 0x8001};
+    scanner.reset_heals = false;
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::protection_stop);
+        const auto reset = co_await test.device->reset();
+        EXPECT_FALSE(reset);
+        EXPECT_THAT(reset.error().cause, HasSubstr("protection stop"));
+    }(*this));
+}
+
+TEST_F(DeviceTest, ResetOfAnIdleLidarLeavesItIdle) {
+    make_device({.scan_at_once = false});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::idle);
+        EXPECT_TRUE(co_await test.device->reset());
+        EXPECT_EQ(test.device->state().phase, Phase::idle);
+    }(*this));
+    EXPECT_EQ(scanner.count(Command::reset), 1U);
+}
+
+TEST_F(DeviceTest, AStopDuringStartingWins) {
+    scanner.turns_at_start = 0;  // the motor never gets up to speed
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::starting);
+        EXPECT_TRUE(co_await test.device->stop());
+        EXPECT_EQ(test.device->state().phase, Phase::idle);
+    }(*this));
+}
+
+TEST_F(DeviceTest, SilenceInMidScanIsAFailureWithACause) {
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);  // the fake sends three turns and falls silent
+        co_await test.until_phase(Phase::failed);
+        EXPECT_THAT(test.device->state().cause, HasSubstr("no samples"));
+        EXPECT_THAT(test.device->state().hint, HasSubstr("motor"));
+    }(*this));
+}
+
+}  // namespace
+}  // namespace sweepcast::device

@@ -1,0 +1,142 @@
+// What the program says when it is called rightly and wrongly.
+#include "gateway.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <string>
+#include <vector>
+
+namespace sweepcast::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+struct Outcome {
+    int exit_code;
+    std::string output, log;
+};
+
+Outcome call(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), program());
+    Process process(arguments);
+    const int exit_code = process.wait();
+    return {exit_code, process.rest_of_output(), process.rest_of_log()};
+}
+
+TEST(CommandLine, HelpHasExamplesForEveryCommand) {
+    for (const auto* command : {"serve", "watch", "virtual", "probe"}) {
+        const auto help = call({command, "--help"});
+        EXPECT_EQ(help.exit_code, 0) << command;
+        EXPECT_THAT(help.output, HasSubstr("Example")) << command;
+    }
+}
+
+struct Mistake {
+    std::vector<std::string> arguments;
+    std::string says;
+};
+
+class MistakeTest : public testing::TestWithParam<Mistake> {};
+
+TEST_P(MistakeTest, IsNamedAndEndsTheProgram) {
+    const auto outcome = call(GetParam().arguments);
+    EXPECT_NE(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.output + outcome.log, HasSubstr(GetParam().says));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Calls,
+    MistakeTest,
+    testing::Values(
+        Mistake{{"serve", "--http", "nowhere"}, "127.0.0.1:8080"},
+        Mistake{{"serve", "--lidar", "usb://1"}, "virtual:a1m8"},
+        Mistake{{"serve", "--lidar", "virtual:z9"}, "z9"},
+        Mistake{{"serve", "--lidar", "virtual:a1m8?world=/nonexistent.csv"}, "/nonexistent.csv"},
+        Mistake{{"serve", "--log-level", "loud"}, "debug"},
+        Mistake{{"serve", "--threads", "0"}, "--threads"},
+        Mistake{{"watch", "http://robot"}, "tcp://127.0.0.1:8081"},
+        Mistake{{"watch", "tcp://127.0.0.1:1"}, "cannot connect to 127.0.0.1:1"},
+        Mistake{{"probe", "/nonexistent"}, "/nonexistent"},
+        Mistake{{"probe", "/etc/passwd"}, "/etc/passwd"}
+    )
+);
+
+TEST(CommandLine, ServeSaysThatItsAddressIsTaken) {
+    GatewayProcess first({"--lidar", "virtual:a1m8"});
+    const auto second =
+        call({"serve", "--lidar", "virtual:a1m8", "--http", first.http, "--tcp", "127.0.0.1:0"});
+    EXPECT_EQ(second.exit_code, 1);
+    EXPECT_THAT(second.log, HasSubstr(first.http));
+}
+
+TEST(CommandLine, ServeWithoutALidarStartsAVirtualOneAndSaysSo) {
+    GatewayProcess gateway({});
+    gateway.process.wait_for_log("starting a virtual one");
+    Subscriber client("tcp://" + gateway.tcp);
+    EXPECT_TRUE(client.wait_for_state(v1::Lidar::SCANNING).is_virtual());
+}
+
+TEST(CommandLine, ProbeTellsWhatIsThere) {
+    VirtualLidarProcess lidar({"--serial", "00112233445566778899AABBCCDDEEFF"});
+    const auto probed = call({"probe", lidar.port});
+    EXPECT_EQ(probed.exit_code, 0);
+    EXPECT_THAT(probed.output, HasSubstr("A1M8"));
+    EXPECT_THAT(probed.output, HasSubstr("00112233445566778899AABBCCDDEEFF"));
+    EXPECT_THAT(probed.output, HasSubstr("Express: 4000 samples/s"));
+}
+
+TEST(CommandLine, ProbeNamesWhoHoldsThePort) {
+    VirtualLidarProcess lidar;
+    GatewayProcess gateway({"--lidar", lidar.port});
+    gateway.process.wait_for_log("scanning");
+    const auto probed = call({"probe", lidar.port});
+    EXPECT_EQ(probed.exit_code, 1);
+    EXPECT_THAT(probed.log, HasSubstr("sweepcast"));
+    EXPECT_THAT(probed.log, HasSubstr(std::to_string(gateway.process.pid())));
+}
+
+TEST(CommandLine, WatchPrintsTheSameSamplesOverTcpAndWebSocket) {
+    GatewayProcess gateway({"--lidar", "virtual:a1m8"});
+    Process over_tcp({program(), "watch", "tcp://" + gateway.tcp, "--csv", "--sweeps", "6"});
+    Process over_websocket(
+        {program(),
+         "watch",
+         "ws://" + gateway.http + "/api/v1/stream?compression=none",
+         "--csv",
+         "--sweeps",
+         "6"}
+    );
+    EXPECT_EQ(over_tcp.wait(), 0);
+    EXPECT_EQ(over_websocket.wait(), 0);
+    const auto tcp = over_tcp.rest_of_output();
+    const auto websocket = over_websocket.rest_of_output();
+    EXPECT_THAT(tcp, StartsWith("lidar,sequence,unix_ns,angle_deg,distance_mm,quality,flag\n"));
+
+    // They may have begun a sweep apart; a sweep that both have must be the same line for line.
+    const auto first_of_websocket = websocket.substr(websocket.find('\n') + 1);
+    const auto first_line = first_of_websocket.substr(0, first_of_websocket.find('\n') + 1);
+    const auto overlap =
+        tcp.substr(tcp.find(first_line) == std::string::npos ? 0 : tcp.find(first_line));
+    if (tcp.find(first_line) != std::string::npos) {
+        EXPECT_THAT(first_of_websocket, StartsWith(overlap));
+    } else {
+        const auto first_of_tcp = tcp.substr(tcp.find('\n') + 1);
+        const auto begin = websocket.find(first_of_tcp.substr(0, first_of_tcp.find('\n') + 1));
+        ASSERT_NE(begin, std::string::npos) << "the two have no sweep in common";
+        EXPECT_THAT(first_of_tcp, StartsWith(websocket.substr(begin)));
+    }
+}
+
+TEST(CommandLine, WatchEndsWhenTold) {
+    GatewayProcess gateway({"--lidar", "virtual:a1m8"});
+    Process watch({program(), "watch", "tcp://" + gateway.tcp, "--json"});
+    watch.wait_for_output("\"angleDeg\"");
+    watch.signal(SIGINT);
+    EXPECT_EQ(watch.wait(), 0);
+}
+
+}  // namespace
+}  // namespace sweepcast::test

@@ -1,0 +1,128 @@
+// Control over HTTP, seen on the stream and by the lidar.
+#include "gateway.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace sweepcast::test {
+namespace {
+
+using testing::HasSubstr;
+
+class ControlTest : public testing::Test {
+protected:
+    ControlTest() {
+        client.subscribe();
+        id = client.wait_for_state(v1::Lidar::SCANNING).id();
+        client.next_sweep();
+    }
+    HttpAnswer post(const std::string& action, const std::string& body = "") {
+        return http(gateway.http, "POST", "/api/v1/lidars/" + id + "/" + action, body);
+    }
+
+    VirtualLidarProcess lidar;
+    GatewayProcess gateway{{"--lidar", lidar.port}};
+    Subscriber client{"tcp://" + gateway.tcp};
+    std::string id;
+};
+
+TEST_F(ControlTest, StopEndsTheStreamAndTheMotorStopsAndStartBringsItBack) {
+    const auto stopped = post("stop");
+    EXPECT_EQ(stopped.status, 200);
+    EXPECT_THAT(stopped.body, HasSubstr("\"IDLE\""));
+    lidar.process.wait_for_log("motor off");
+    client.wait_for_state(v1::Lidar::IDLE);
+
+    const auto started = post("start");
+    EXPECT_EQ(started.status, 200);
+    EXPECT_THAT(started.body, HasSubstr("\"SCANNING\""));
+    lidar.process.wait_for_log("motor on");
+    // Between the two no frame came: the next message is the state that the start brought about.
+    EXPECT_FALSE(client.next().has_frame());
+    client.next_sweep();
+}
+
+TEST_F(ControlTest, StartWithAModeChangesTheMode) {
+    const auto answer = post("start", R"({"mode": "Standard"})");
+    EXPECT_EQ(answer.status, 200);
+    lidar.process.wait_for_log("scan started: Standard");
+    const auto in_standard = client.next([](const auto& message) {
+        return message.lidar().state() == v1::Lidar::SCANNING &&
+               message.lidar().mode() == "Standard";
+    });
+    EXPECT_EQ(client.next_sweep().scan.mode, "Standard");
+}
+
+TEST_F(ControlTest, ResetRebootsTheLidarAndTheScanGoesOn) {
+    const auto answer = post("reset");
+    EXPECT_EQ(answer.status, 200);
+    EXPECT_THAT(answer.body, HasSubstr("\"SCANNING\""));
+    lidar.process.wait_for_log("reset");
+    lidar.process.wait_for_log("scan started");
+    client.wait_for_state(v1::Lidar::IDENTIFYING);
+    client.wait_for_state(v1::Lidar::SCANNING);
+    client.next_sweep();
+}
+
+TEST_F(ControlTest, AnUnknownModeIsRefusedAndTheScanGoesOn) {
+    const auto answer = post("start", R"({"mode": "Turbo"})");
+    EXPECT_EQ(answer.status, 400);
+    EXPECT_THAT(answer.body, HasSubstr("unknown_mode"));
+    EXPECT_THAT(answer.body, HasSubstr("Standard, Express"));
+    client.next_sweep();
+}
+
+TEST_F(ControlTest, TheLatestSweepIsThereAsJsonAndCsv) {
+    const auto json = http(gateway.http, "GET", "/api/v1/lidars/" + id + "/scan");
+    EXPECT_EQ(json.status, 200);
+    EXPECT_THAT(json.body, HasSubstr("\"angleDeg\""));
+    const auto csv = http(gateway.http, "GET", "/api/v1/lidars/" + id + "/scan?format=csv");
+    EXPECT_EQ(csv.status, 200);
+    EXPECT_EQ(csv.header("content-type"), "text/csv; charset=utf-8");
+    EXPECT_GT(std::ranges::count(csv.body, '\n'), 100);
+}
+
+TEST(Control, AnIdleGatewayScansWhenToldTo) {
+    GatewayProcess gateway({"--lidar", "virtual:a1m8", "--idle"});
+    Subscriber client("ws://" + gateway.http + "/api/v1/stream?kind=sweep");
+    const auto id = client.wait_for_state(v1::Lidar::IDLE).id();
+    EXPECT_EQ(http(gateway.http, "GET", "/api/v1/lidars/" + id + "/scan").status, 404);
+    EXPECT_EQ(http(gateway.http, "POST", "/api/v1/lidars/" + id + "/start").status, 200);
+    client.next_sweep();
+}
+
+TEST(Control, ALidarThatIsNotThereSaysWhyAndAppearsWhenItComes) {
+    ScratchDirectory scratch;
+    const auto port = scratch.file("lidar");
+    GatewayProcess gateway({"--lidar", port});
+    Subscriber client("tcp://" + gateway.tcp);
+    client.subscribe();
+    const auto failed = client.wait_for_state(v1::Lidar::FAILED);
+    EXPECT_THAT(failed.cause(), HasSubstr(port));
+    EXPECT_NE(failed.hint(), "");
+    const auto refused = http(gateway.http, "POST", "/api/v1/lidars/lidar/start");
+    EXPECT_EQ(refused.status, 503);
+    EXPECT_THAT(refused.body, HasSubstr(port));
+
+    VirtualLidarProcess lidar({"--link", port});
+    client.next_sweep();
+}
+
+TEST(Control, ALidarThatVanishesIsReportedAndTakenAgain) {
+    ScratchDirectory scratch;
+    const auto port = scratch.file("lidar");
+    auto lidar = std::make_unique<VirtualLidarProcess>(std::vector<std::string>{"--link", port});
+    GatewayProcess gateway({"--lidar", port});
+    Subscriber client("tcp://" + gateway.tcp);
+    client.subscribe();
+    const auto before = client.next_sweep().sequence;
+    lidar.reset();  // killed
+    client.wait_for_state(v1::Lidar::FAILED);
+    lidar = std::make_unique<VirtualLidarProcess>(std::vector<std::string>{"--link", port});
+    EXPECT_GT(client.next_sweep().sequence, before);
+}
+
+}  // namespace
+}  // namespace sweepcast::test

@@ -1,0 +1,69 @@
+// A client that stops reading: bounded memory, told what it missed, and nobody else notices.
+#include "gateway.hpp"
+
+#include <boost/asio/connect.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/write.hpp>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sweepcast::test {
+namespace {
+
+namespace asio = boost::asio;
+
+/// Asks for uncompressed frames and then never reads; its receive buffer is as small as the kernel
+/// allows.
+class NeverReads {
+public:
+    explicit NeverReads(const std::string& address) {
+        const auto colon = address.rfind(':');
+        socket_.open(asio::ip::tcp::v4());
+        socket_.set_option(asio::socket_base::receive_buffer_size(1));
+        socket_.connect(
+            {asio::ip::make_address(address.substr(0, colon)),
+             static_cast<std::uint16_t>(std::stoi(address.substr(colon + 1)))}
+        );
+        v1::ClientMessage message;
+        message.mutable_subscribe()->set_compression(v1::NONE);
+        auto bytes = message.SerializeAsString();
+        bytes.insert(bytes.begin(), static_cast<char>(bytes.size()));
+        asio::write(socket_, asio::buffer(bytes));
+    }
+
+private:
+    asio::io_context context_;
+    asio::ip::tcp::socket socket_{context_};
+};
+
+TEST(SlowClient, ThatNeverReadsDelaysNobodyAndCostsBoundedMemory) {
+    GatewayProcess gateway({"--lidar", "virtual:a1m8"});
+    Subscriber reader("tcp://" + gateway.tcp);
+    reader.subscribe("", false);
+    reader.next_sweep();
+    const auto before = gateway.process.resident_bytes();
+
+    constexpr std::size_t count = 50;
+    std::vector<std::unique_ptr<NeverReads>> stalled;
+    for (std::size_t i = 0; i < count; ++i) {
+        stalled.push_back(std::make_unique<NeverReads>(gateway.tcp));
+    }
+    auto last = reader.next_sweep().sequence;
+    for (int i = 0; i < 60; ++i) {
+        const auto sequence = reader.next_sweep().sequence;
+        EXPECT_EQ(sequence, last + 1) << "the reader missed a sweep";
+        last = sequence;
+    }
+    const auto grown =
+        gateway.process.resident_bytes() - std::min(before, gateway.process.resident_bytes());
+    // Sixty sweeps of 1 to 3 kB each were published to each; eight wait in a mailbox, shared by
+    // all. What each stalled client has to itself is a coroutine and its buffers.
+    EXPECT_LT(grown, count * 100'000);
+}
+
+}  // namespace
+}  // namespace sweepcast::test

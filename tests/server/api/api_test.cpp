@@ -1,0 +1,234 @@
+#include "server/api/api.hpp"
+
+#include "driver/device/advice.hpp"
+#include "driver/device/error.hpp"
+#include "server/stream/messages.hpp"
+#include "sweepcast/v1/api.pb.h"
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/use_future.hpp>
+#include <gmock/gmock.h>
+#include <google/protobuf/util/json_util.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sweepcast::api {
+namespace {
+
+namespace asio = boost::asio;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// Writes down what it is told, and does it or not.
+class RecordingControl final : public LidarControl {
+public:
+    asio::awaitable<Outcome> start(std::uint32_t lidar, std::string mode) override {
+        co_return note("start " + std::to_string(lidar) + " " + mode);
+    }
+    asio::awaitable<Outcome> stop(std::uint32_t lidar) override {
+        co_return note("stop " + std::to_string(lidar));
+    }
+    asio::awaitable<Outcome> reset(std::uint32_t lidar) override {
+        co_return note("reset " + std::to_string(lidar));
+    }
+
+    Outcome note(const std::string& order) {
+        orders.push_back(order);
+        if (problem) {
+            return *problem;
+        }
+        return snapshot;
+    }
+
+    std::vector<std::string> orders;
+    hub::LidarSnapshotPtr snapshot;
+    std::optional<Problem> problem;
+};
+
+class ApiTest : public testing::Test {
+protected:
+    ApiTest() {
+        auto lidar = std::make_shared<hub::LidarSnapshot>();
+        lidar->number = 1;
+        lidar->id = "A0E1C2D3";
+        lidar->port_name = "ttyUSB0";
+        lidar->state.phase = device::Phase::scanning;
+        control.snapshot = lidar;
+        hub.deliver(hub::StateNews{lidar, stream::state_message(*lidar)});
+    }
+
+    Response ask(
+        const std::string& method,
+        const std::string& target,
+        const std::string& body = "",
+        const std::string& accept = ""
+    ) {
+        Request request;
+        request.method = method;
+        request.body = body;
+        request.accept = accept;
+        EXPECT_TRUE(set_target(request, target));
+        auto answered = asio::co_spawn(context, api.handle(std::move(request)), asio::use_future);
+        context.restart();
+        context.run();
+        return answered.get();
+    }
+
+    void publish_sweep() {
+        auto sweep = std::make_shared<device::CapturedSweep>();
+        sweep->lidar = "A0E1C2D3";
+        sweep->sequence = 9;
+        sweep->sweep.samples.resize(3);
+        hub.deliver(hub::SweepNews{.lidar = 1, .sweep = sweep, .frames = {}});
+    }
+
+    static v1::Error error_in(const Response& response) {
+        v1::ErrorResponse message;
+        EXPECT_TRUE(google::protobuf::util::JsonStringToMessage(response.body, &message).ok())
+            << response.body;
+        return message.error();
+    }
+
+    asio::io_context context;
+    hub::Demand demand{};
+    hub::LocalHub hub{demand};
+    RecordingControl control;
+    Api api{hub, control};
+};
+
+TEST_F(ApiTest, ListsTheLidars) {
+    const auto response = ask("GET", "/api/v1/lidars");
+    EXPECT_EQ(response.status, 200);
+    v1::ListLidarsResponse message;
+    ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(response.body, &message).ok());
+    ASSERT_EQ(message.lidars_size(), 1);
+    EXPECT_EQ(message.lidars(0).id(), "A0E1C2D3");
+    EXPECT_THAT(response.body, HasSubstr("\"SCANNING\""));
+}
+
+TEST_F(ApiTest, GivesOneLidarByIdOrPortName) {
+    EXPECT_EQ(ask("GET", "/api/v1/lidars/A0E1C2D3").status, 200);
+    EXPECT_EQ(
+        ask("GET", "/api/v1/lidars/ttyUSB0").body,
+        ask("GET", "/api/v1/lidars/A0E1C2D3").body
+    );
+}
+
+TEST_F(ApiTest, HasLidarsObey) {
+    EXPECT_EQ(ask("POST", "/api/v1/lidars/A0E1C2D3/start").status, 200);
+    EXPECT_EQ(ask("POST", "/api/v1/lidars/A0E1C2D3/start", R"({"mode": "Express"})").status, 200);
+    EXPECT_EQ(ask("POST", "/api/v1/lidars/A0E1C2D3/stop").status, 200);
+    EXPECT_EQ(ask("POST", "/api/v1/lidars/A0E1C2D3/reset").status, 200);
+    EXPECT_THAT(control.orders, ElementsAre("start 1 ", "start 1 Express", "stop 1", "reset 1"));
+}
+
+struct Refused {
+    std::string method, target, body;
+    int status;
+    std::string code;
+};
+
+void PrintTo(const Refused& refused, std::ostream* out) {
+    *out << refused.method << ' ' << refused.target << ' ' << refused.body;
+}
+
+class RefusedTest : public ApiTest, public testing::WithParamInterface<Refused> {};
+
+TEST_P(RefusedTest, HasTheErrorShapeAndMovesNothing) {
+    const auto& refused = GetParam();
+    const auto response = ask(refused.method, refused.target, refused.body);
+    EXPECT_EQ(response.status, refused.status);
+    EXPECT_EQ(response.content_type, "application/json");
+    const auto error = error_in(response);
+    EXPECT_EQ(error.code(), refused.code);
+    EXPECT_NE(error.message(), "");
+    EXPECT_NE(error.hint(), "");
+    EXPECT_TRUE(control.orders.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Requests,
+    RefusedTest,
+    testing::Values(
+        Refused{"GET", "/nothing", "", 404, "not_found"},
+        Refused{"GET", "/api/v1/lidars/", "", 404, "not_found"},
+        Refused{"GET", "/api/v1/lidars/nobody", "", 404, "lidar_not_found"},
+        Refused{"GET", "/api/v1/lidars/nobody/scan", "", 404, "lidar_not_found"},
+        Refused{"POST", "/api/v1/lidars/nobody/start", "", 404, "lidar_not_found"},
+        Refused{"POST", "/api/v1/lidars/nobody/stop", "", 404, "lidar_not_found"},
+        Refused{"POST", "/api/v1/lidars/nobody/reset", "", 404, "lidar_not_found"},
+        Refused{"POST", "/api/v1/lidars/a/b/stop", "", 404, "not_found"},
+        Refused{"GET", "/api/v1/lidars/A0E1C2D3/start", "", 405, "method_not_allowed"},
+        Refused{"DELETE", "/api/v1/lidars", "", 405, "method_not_allowed"},
+        Refused{"POST", "/api/v1/lidars/A0E1C2D3/start", "mode=Express", 400, "bad_body"},
+        Refused{"POST", "/api/v1/lidars/A0E1C2D3/start", R"({"mood": "Express"})", 400, "bad_body"},
+        Refused{"POST", "/api/v1/lidars/A0E1C2D3/start", R"({"mode": 7})", 400, "bad_body"},
+        Refused{"GET", "/api/v1/lidars/A0E1C2D3/scan", "", 404, "no_scan_yet"},
+        Refused{"GET", "/api/v1/lidars/A0E1C2D3/scan?format=xml", "", 400, "unknown_format"}
+    )
+);
+
+TEST_F(ApiTest, SaysWhichMethodsAPathTakes) {
+    const auto response = ask("GET", "/api/v1/lidars/A0E1C2D3/stop");
+    EXPECT_THAT(response.headers, ElementsAre(testing::Pair("Allow", "POST")));
+}
+
+struct Mapped {
+    device::errc code;
+    int status;
+    std::string name;
+};
+
+TEST_F(ApiTest, TurnsALidarsProblemsIntoStatusAndCode) {
+    for (const auto& [code, status, name] : {
+             Mapped{device::errc::unknown_mode, 400, "unknown_mode"},
+             Mapped{device::errc::superseded, 409, "superseded"},
+             Mapped{device::errc::not_ready, 503, "lidar_not_ready"},
+             Mapped{device::errc::shutting_down, 503, "shutting_down"},
+             Mapped{device::errc::no_answer, 503, "lidar_failed"},
+         }) {
+        control.problem = device::advice(code);
+        const auto response = ask("POST", "/api/v1/lidars/A0E1C2D3/start");
+        EXPECT_EQ(response.status, status);
+        EXPECT_EQ(error_in(response).code(), name);
+    }
+}
+
+TEST_F(ApiTest, GivesTheLatestSweepAsJson) {
+    publish_sweep();
+    const auto response = ask("GET", "/api/v1/lidars/A0E1C2D3/scan");
+    EXPECT_EQ(response.status, 200);
+    v1::LatestScan scan;
+    ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(response.body, &scan).ok());
+    EXPECT_EQ(scan.sequence(), 9U);
+    EXPECT_EQ(scan.angle_deg_size(), 3);
+}
+
+TEST_F(ApiTest, GivesTheLatestSweepAsCsvByFormatOrAccept) {
+    publish_sweep();
+    const auto by_format = ask("GET", "/api/v1/lidars/A0E1C2D3/scan?format=csv");
+    const auto by_accept = ask("GET", "/api/v1/lidars/A0E1C2D3/scan", "", "text/csv");
+    EXPECT_EQ(by_format.content_type, "text/csv; charset=utf-8");
+    EXPECT_THAT(by_format.body, HasSubstr("angle_deg,distance_mm,quality,time_us\n"));
+    EXPECT_EQ(by_accept.body, by_format.body);
+}
+
+TEST_F(ApiTest, HealthCountsLidarsAndSubscribers) {
+    const auto response = ask("GET", "/healthz");
+    v1::HealthzResponse health;
+    ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(response.body, &health).ok());
+    EXPECT_EQ(health.status(), "ok");
+    EXPECT_EQ(health.lidars(), 1U);
+    EXPECT_EQ(health.scanning(), 1U);
+}
+
+TEST_F(ApiTest, AnswersHeadLikeGet) {
+    EXPECT_EQ(ask("HEAD", "/healthz").status, 200);
+}
+
+}  // namespace
+}  // namespace sweepcast::api

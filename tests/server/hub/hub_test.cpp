@@ -1,0 +1,97 @@
+// Hub: publishing from one thread, delivering on others.
+#include "server/hub/hub.hpp"
+
+#include "driver/async/worker.hpp"
+#include "wire_messages.hpp"
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/use_future.hpp>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sweepcast::hub {
+namespace {
+
+namespace asio = boost::asio;
+
+void no_failure(std::exception_ptr) {
+    FAIL() << "a task failed";
+}
+
+class HubTest : public testing::Test {
+protected:
+    static constexpr std::size_t worker_count = 4;
+
+    HubTest() {
+        std::vector<Hub::Executor> executors;
+        for (std::size_t i = 0; i < worker_count; ++i) {
+            workers.push_back(std::make_unique<async::Worker>("test", no_failure));
+            executors.push_back(workers.back()->executor());
+        }
+        hub = std::make_unique<Hub>(executors);
+    }
+    ~HubTest() override { workers.clear(); }
+
+    /// Subscribes on a worker, tells so, and collects `count` messages.
+    static asio::awaitable<std::vector<std::string>>
+    collect(Hub& hub, std::size_t worker, std::size_t count, std::promise<void>& subscribed) {
+        Mailbox mailbox(co_await asio::this_coro::executor, {.frames = 1000});
+        LocalHub::Subscription subscription(hub.local(worker), mailbox);
+        subscription.set_wish(Wish{});
+        subscribed.set_value();
+        std::vector<std::string> texts;
+        while (texts.size() < count) {
+            texts.push_back(text(co_await mailbox.next()));
+        }
+        co_return texts;
+    }
+
+    std::vector<std::unique_ptr<async::Worker>> workers;
+    std::unique_ptr<Hub> hub;
+};
+
+TEST_F(HubTest, EveryWorkersSubscriberGetsEverySweepInOrder) {
+    constexpr std::size_t sweeps = 200;
+    std::vector<std::promise<void>> subscribed(worker_count);
+    std::vector<std::future<std::vector<std::string>>> collected;
+    for (std::size_t i = 0; i < worker_count; ++i) {
+        collected.push_back(asio::co_spawn(
+            workers[i]->executor(),
+            collect(*hub, i, sweeps, subscribed[i]),
+            asio::use_future
+        ));
+    }
+    for (auto& promise : subscribed) {
+        promise.get_future().wait();
+    }
+    EXPECT_TRUE(hub->wanted(frame::Compression::zstd));
+    EXPECT_FALSE(hub->wanted(frame::Compression::none));
+
+    std::vector<std::string> expected;
+    for (std::size_t i = 0; i < sweeps; ++i) {
+        expected.push_back(std::to_string(i));
+        SweepNews news;
+        news.lidar = 1;
+        news.frames[0] = message(expected.back());
+        hub->publish(std::move(news));
+    }
+    for (auto& texts : collected) {
+        EXPECT_EQ(texts.get(), expected);
+    }
+}
+
+TEST_F(HubTest, AWorkerThatIsStuckGetsNoMoreThanABoundOfSweeps) {
+    std::promise<void> release;
+    asio::post(workers[0]->executor(), [&] { release.get_future().wait(); });
+    for (int i = 0; i < 1000; ++i) {
+        hub->publish(SweepNews{.lidar = 1, .sweep = {}, .frames = {}});
+    }
+    EXPECT_GT(hub->sweeps_withheld(), 0U);
+    release.set_value();
+}
+
+}  // namespace
+}  // namespace sweepcast::hub

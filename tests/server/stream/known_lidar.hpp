@@ -1,0 +1,36 @@
+// A lidar that a test's hub knows.
+#pragma once
+
+#include "server/hub/local_hub.hpp"
+#include "server/stream/messages.hpp"
+
+#include <memory>
+
+namespace sweepcast::stream {
+
+inline hub::LidarSnapshotPtr known_lidar() {
+    auto lidar = std::make_shared<hub::LidarSnapshot>();
+    lidar->number = 1;
+    lidar->id = "A0E1C2D3";
+    lidar->port_name = "ttyUSB0";
+    lidar->url = "/dev/ttyUSB0";
+    lidar->state.phase = device::Phase::scanning;
+    lidar->state.info = protocol::DeviceInfo{
+        .model = 0x18,
+        .firmware_major = 1,
+        .firmware_minor = 29,
+        .hardware = 7,
+        .serial = {0xA0, 0xE1, 0xC2, 0xD3}};
+    lidar->state.health = protocol::Health{protocol::HealthStatus::warning, 7};
+    lidar->state.modes = {
+        {"Express", protocol::AnswerType::express, std::chrono::microseconds(250)}};
+    lidar->state.mode = "Express";
+    return lidar;
+}
+
+inline void add_known_lidar(hub::LocalHub& hub) {
+    const auto lidar = known_lidar();
+    hub.deliver(hub::StateNews{lidar, state_message(*lidar)});
+}
+
+}  // namespace sweepcast::stream

@@ -1,0 +1,132 @@
+#include "server/stream/messages.hpp"
+
+#include "known_lidar.hpp"
+#include "sweepcast/v1/stream.pb.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace sweepcast::stream {
+namespace {
+
+using testing::HasSubstr;
+
+v1::ServerMessage parse(const frame::WireMessagePtr& wire) {
+    v1::ServerMessage message;
+    const auto bytes = wire->message();
+    EXPECT_TRUE(message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())));
+    return message;
+}
+
+class MessagesTest : public testing::Test {
+protected:
+    MessagesTest() { add_known_lidar(hub); }
+
+    hub::Demand demand{};
+    hub::LocalHub hub{demand};
+};
+
+TEST_F(MessagesTest, HelloTellsVersionAndLidars) {
+    const auto message = parse(hello_message(hub));
+    ASSERT_TRUE(message.has_hello());
+    EXPECT_EQ(message.hello().protocol_version(), 1U);
+    ASSERT_EQ(message.hello().lidars_size(), 1);
+    EXPECT_EQ(message.hello().lidars(0).id(), "A0E1C2D3");
+}
+
+TEST_F(MessagesTest, StateTellsEverythingKnownOfALidar) {
+    const auto lidar = parse(state_message(*known_lidar())).lidar();
+    EXPECT_EQ(lidar.state(), v1::Lidar::SCANNING);
+    EXPECT_EQ(lidar.device().model(), "A1M8");
+    EXPECT_EQ(lidar.device().firmware(), "1.29");
+    EXPECT_EQ(lidar.device().serial_number(), "A0E1C2D3000000000000000000000000");
+    EXPECT_EQ(lidar.health().status(), v1::Health::WARNING);
+    EXPECT_EQ(lidar.health().error_code(), 7U);
+    ASSERT_EQ(lidar.modes_size(), 1);
+    EXPECT_EQ(lidar.modes(0).samples_per_second(), 4000);
+    EXPECT_EQ(lidar.modes(0).answer_type(), 0x82U);
+}
+
+TEST_F(MessagesTest, ASubscribeBecomesAWish) {
+    v1::ClientMessage message;
+    message.mutable_subscribe()->set_lidar("A0E1C2D3");
+    message.mutable_subscribe()->set_compression(v1::NONE);
+    const auto wish = wish_from_message(message.SerializeAsString(), hub);
+    ASSERT_TRUE(wish);
+    EXPECT_EQ(wish->lidar, 1U);
+    EXPECT_EQ(wish->compression, frame::Compression::none);
+}
+
+TEST_F(MessagesTest, ASubscribeWithoutALidarWantsAll) {
+    v1::ClientMessage message;
+    message.mutable_subscribe();
+    const auto wish = wish_from_message(message.SerializeAsString(), hub);
+    ASSERT_TRUE(wish);
+    EXPECT_FALSE(wish->lidar);
+}
+
+TEST_F(MessagesTest, AnUnknownLidarIsRefusedAndTheKnownOnesAreNamed) {
+    v1::ClientMessage message;
+    message.mutable_subscribe()->set_lidar("nobody");
+    const auto wish = wish_from_message(message.SerializeAsString(), hub);
+    ASSERT_FALSE(wish);
+    EXPECT_EQ(wish.error().code, "lidar_not_found");
+    EXPECT_THAT(wish.error().hint, HasSubstr("A0E1C2D3"));
+}
+
+TEST_F(MessagesTest, BytesThatAreNoClientMessageAreRefused) {
+    for (const std::string bytes : {"", "GET / HTTP/1.1", "\xff\xff\xff\xff"}) {
+        const auto wish = wish_from_message(bytes, hub);
+        ASSERT_FALSE(wish);
+        EXPECT_EQ(wish.error().code, "bad_message");
+    }
+}
+
+TEST_F(MessagesTest, KindsAndCompressionsOfALaterVersionAreRefused) {
+    v1::ClientMessage message;
+    message.mutable_subscribe()->set_kind(static_cast<v1::Kind>(99));
+    EXPECT_EQ(wish_from_message(message.SerializeAsString(), hub).error().code, "unknown_kind");
+    message.mutable_subscribe()->set_kind(v1::SWEEP);
+    message.mutable_subscribe()->set_compression(static_cast<v1::Compression>(99));
+    EXPECT_EQ(
+        wish_from_message(message.SerializeAsString(), hub).error().code,
+        "unknown_compression"
+    );
+}
+
+TEST_F(MessagesTest, AQueryBecomesAWish) {
+    const auto wish =
+        wish_from_query({{"lidar", "ttyUSB0"}, {"kind", "sweep"}, {"compression", "none"}}, hub);
+    ASSERT_TRUE(wish);
+    EXPECT_EQ(wish->lidar, 1U);
+    EXPECT_EQ(wish->compression, frame::Compression::none);
+}
+
+struct QueryCase {
+    std::string key, value, code;
+};
+
+class BadQueryTest : public MessagesTest, public testing::WithParamInterface<QueryCase> {};
+
+TEST_P(BadQueryTest, IsRefused) {
+    const auto wish = wish_from_query({{GetParam().key, GetParam().value}}, hub);
+    ASSERT_FALSE(wish);
+    EXPECT_EQ(wish.error().code, GetParam().code);
+    EXPECT_NE(wish.error().hint, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Parameters,
+    BadQueryTest,
+    testing::Values(
+        QueryCase{"lidar", "nobody", "lidar_not_found"},
+        QueryCase{"kind", "sector", "unknown_kind"},
+        QueryCase{"compression", "gzip", "unknown_compression"},
+        QueryCase{"compresion", "none", "unknown_parameter"}
+    )
+);
+
+}  // namespace
+}  // namespace sweepcast::stream

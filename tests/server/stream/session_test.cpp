@@ -1,0 +1,202 @@
+// serve_subscriber over a transport in memory.
+#include "server/stream/session.hpp"
+
+#include "driver/async/notifier.hpp"
+#include "known_lidar.hpp"
+#include "sweepcast/v1/stream.pb.h"
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/error.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/use_future.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <future>
+#include <string>
+#include <vector>
+
+namespace sweepcast::stream {
+namespace {
+
+namespace asio = boost::asio;
+using testing::HasSubstr;
+using Clock = std::chrono::steady_clock;
+
+/// Keeps what is sent while `reads`; otherwise lets the sender wait.
+class MemoryTransport final : public Transport {
+public:
+    explicit MemoryTransport(asio::any_io_executor executor) : changed(std::move(executor)) {}
+
+    asio::awaitable<Result<void>> send(const frame::WireMessage& message) override {
+        while (!reads) {
+            co_await changed.wait_until(Clock::time_point::max());
+        }
+        const auto bytes = message.message();
+        sent.emplace_back().ParseFromArray(bytes.data(), static_cast<int>(bytes.size()));
+        co_return Result<void>{};
+    }
+    asio::awaitable<Result<std::string>> receive() override {
+        while (incoming.empty()) {
+            if (gone) {
+                co_return asio::error::make_error_code(asio::error::eof);
+            }
+            co_await changed.wait_until(Clock::time_point::max());
+        }
+        auto message = std::move(incoming.front());
+        incoming.pop_front();
+        co_return message;
+    }
+    asio::awaitable<void> close(const std::string& reason) override {
+        closed_for = reason;
+        co_return;
+    }
+
+    bool reads{true};
+    bool gone{};
+    std::deque<std::string> incoming;
+    std::vector<v1::ServerMessage> sent;
+    std::string closed_for;
+    async::Notifier changed;
+};
+
+class SessionTest : public testing::Test {
+protected:
+    SessionTest() {
+        add_known_lidar(hub);
+        settings.client = "test";
+    }
+    ~SessionTest() override {
+        transport.gone = true;
+        transport.changed.notify();
+        run();
+    }
+
+    void serve() {
+        served = asio::co_spawn(
+            context,
+            serve_subscriber(transport, hub, settings, log),
+            asio::use_future
+        );
+        run();
+    }
+    void run() {
+        context.restart();
+        context.poll();
+    }
+    void say(const v1::ClientMessage& message) {
+        transport.incoming.push_back(message.SerializeAsString());
+        transport.changed.notify();
+        run();
+    }
+    void publish(int sweeps) {
+        for (int i = 0; i < sweeps; ++i) {
+            v1::ServerMessage message;
+            message.mutable_frame()->set_sequence(++sequence);
+            hub::SweepNews news;
+            news.lidar = 1;
+            news.frames[0] = std::make_shared<const frame::WireMessage>(message);
+            hub.deliver(news);
+        }
+        run();
+    }
+    [[nodiscard]] bool ended() const {
+        return served.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    }
+
+    asio::io_context context;
+    hub::Demand demand{};
+    hub::LocalHub hub{demand};
+    MemoryTransport transport{context.get_executor()};
+    SessionSettings settings;
+    std::shared_ptr<spdlog::logger> log = std::make_shared<spdlog::logger>("test");
+    std::future<void> served;
+    std::uint64_t sequence{};
+};
+
+TEST_F(SessionTest, GreetsFirst) {
+    serve();
+    ASSERT_EQ(transport.sent.size(), 1U);
+    EXPECT_TRUE(transport.sent[0].has_hello());
+}
+
+TEST_F(SessionTest, DeliversWhatIsSubscribedTo) {
+    serve();
+    publish(1);
+    EXPECT_EQ(transport.sent.size(), 1U);
+    v1::ClientMessage subscribe;
+    subscribe.mutable_subscribe()->set_lidar("A0E1C2D3");
+    say(subscribe);
+    publish(2);
+    ASSERT_EQ(transport.sent.size(), 3U);
+    EXPECT_EQ(transport.sent[1].frame().sequence(), 2U);
+    EXPECT_EQ(transport.sent[2].frame().sequence(), 3U);
+}
+
+TEST_F(SessionTest, DeliversAtOnceWhenTheWishCameWithTheConnection) {
+    settings.wish = hub::Wish{};
+    serve();
+    publish(1);
+    ASSERT_EQ(transport.sent.size(), 2U);
+    EXPECT_TRUE(transport.sent[1].has_frame());
+}
+
+TEST_F(SessionTest, PushesStateChangesWithoutBeingAsked) {
+    serve();
+    add_known_lidar(hub);
+    run();
+    ASSERT_EQ(transport.sent.size(), 2U);
+    EXPECT_TRUE(transport.sent[1].has_lidar());
+}
+
+TEST_F(SessionTest, RefusesAnImpossibleWishAndGoesOn) {
+    serve();
+    v1::ClientMessage subscribe;
+    subscribe.mutable_subscribe()->set_lidar("nobody");
+    say(subscribe);
+    ASSERT_EQ(transport.sent.size(), 2U);
+    EXPECT_EQ(transport.sent[1].error().code(), "lidar_not_found");
+    EXPECT_FALSE(ended());
+}
+
+TEST_F(SessionTest, TellsAClientThatDidNotReadWhatItMissed) {
+    settings.wish = hub::Wish{};
+    settings.mailbox.frames = 2;
+    serve();
+    transport.reads = false;
+    publish(1);  // is being sent
+    publish(9);  // two wait, seven are dropped
+    transport.reads = true;
+    transport.changed.notify();
+    run();
+    ASSERT_EQ(transport.sent.size(), 5U);
+    EXPECT_EQ(transport.sent[1].frame().sequence(), 1U);
+    ASSERT_TRUE(transport.sent[2].has_stats());
+    EXPECT_EQ(transport.sent[2].stats().frames_dropped(), 7U);
+    EXPECT_EQ(transport.sent[3].frame().sequence(), 9U);
+    EXPECT_EQ(transport.sent[4].frame().sequence(), 10U);
+}
+
+TEST_F(SessionTest, EndsWhenTheClientGoes) {
+    settings.wish = hub::Wish{};
+    serve();
+    EXPECT_EQ(hub.subscribers(), 1U);
+    transport.gone = true;
+    transport.changed.notify();
+    run();
+    EXPECT_TRUE(ended());
+    EXPECT_EQ(hub.subscribers(), 0U);
+}
+
+TEST_F(SessionTest, EndsWithAFarewellWhenTheGatewayDoes) {
+    serve();
+    hub.close_all(closing_message("going down"), "going down");
+    run();
+    ASSERT_TRUE(ended());
+    EXPECT_EQ(transport.sent.back().closing().reason(), "going down");
+    EXPECT_EQ(transport.closed_for, "going down");
+}
+
+}  // namespace
+}  // namespace sweepcast::stream
