@@ -144,6 +144,9 @@ receive_all(client::StreamUrl url, const WatchArguments& arguments, Watcher& wat
     }
     for (;;) {
         const auto message = co_await client.receive();
+        if (!message && message.error() == asio::error::operation_aborted) {
+            co_return;  // told to stop
+        }
         if (!message) {
             watcher.fail({message.error(), "the connection ended: " + message.error().message(), ""}
             );

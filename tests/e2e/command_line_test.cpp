@@ -1,5 +1,5 @@
 // What the program says when it is called rightly and wrongly.
-#include "gateway.hpp"
+#include "tests/e2e/gateway.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

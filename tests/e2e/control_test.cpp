@@ -1,5 +1,5 @@
 // Control over HTTP, seen on the stream and by the lidar.
-#include "gateway.hpp"
+#include "tests/e2e/gateway.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "gateway.hpp"
+#include "tests/e2e/gateway.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/use_future.hpp>

@@ -1,9 +1,9 @@
 // The real program for end-to-end tests: a virtual lidar, a gateway, and what clients see of it.
 #pragma once
 
-#include "process.hpp"
 #include "server/client/stream_client.hpp"
 #include "server/frame/frame_decoder.hpp"
+#include "tests/support/process.hpp"
 
 #include <boost/asio/io_context.hpp>
 

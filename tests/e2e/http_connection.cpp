@@ -1,5 +1,5 @@
 // The HTTP half of gateway.hpp, apart because Beast is slow to compile.
-#include "gateway.hpp"
+#include "tests/e2e/gateway.hpp"
 
 #include <boost/asio/connect.hpp>
 #include <boost/asio/ip/tcp.hpp>

@@ -1,5 +1,5 @@
 // HTTP as it is on the socket: limits, statuses, headers, keep-alive.
-#include "gateway.hpp"
+#include "tests/e2e/gateway.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // The end: signals, exit codes, motors.
-#include "gateway.hpp"
+#include "tests/e2e/gateway.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // A client that stops reading: bounded memory, told what it missed, and nobody else notices.
-#include "gateway.hpp"
+#include "tests/e2e/gateway.hpp"
 
 #include <boost/asio/connect.hpp>
 #include <boost/asio/ip/tcp.hpp>

@@ -1,5 +1,5 @@
 // A virtual lidar in a room from a file: what clients receive lies on the file's points.
-#include "gateway.hpp"
+#include "tests/e2e/gateway.hpp"
 
 #include <gtest/gtest.h>
 

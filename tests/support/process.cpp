@@ -1,4 +1,4 @@
-#include "process.hpp"
+#include "tests/support/process.hpp"
 
 #include <algorithm>
 #include <array>
@@ -52,7 +52,8 @@ int milliseconds_until(Clock::time_point deadline) {
 Process::Process(const std::vector<std::string>& arguments) {
     std::vector<char*> argv;
     for (const auto& argument : arguments) {
-        argv.push_back(const_cast<char*>(argument.c_str()));  // NOLINT: posix_spawn does not write
+        argv.push_back(const_cast<char*>(argument.c_str())
+        );  // NOLINT(cppcoreguidelines-pro-type-const-cast): posix_spawn does not write
     }
     argv.push_back(nullptr);
 

@@ -1,3 +1,4 @@
+// Notifier: waking, deadlines, leaving.
 #include "driver/async/notifier.hpp"
 
 #include <boost/asio/co_spawn.hpp>

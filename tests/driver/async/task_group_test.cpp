@@ -1,3 +1,4 @@
+// TaskGroup: joining, cancelling, failing.
 #include "driver/async/task_group.hpp"
 
 #include <boost/asio/co_spawn.hpp>

@@ -1,3 +1,4 @@
+// Worker and run_on: which thread runs what, and the end.
 #include "driver/async/worker.hpp"
 
 #include <boost/asio/io_context.hpp>

@@ -3,8 +3,8 @@
 #include "driver/device/device.hpp"
 
 #include "driver/device/error.hpp"
-#include "fake_scanner.hpp"
-#include "memory_link.hpp"
+#include "tests/driver/device/fake_scanner.hpp"
+#include "tests/driver/device/memory_link.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>

@@ -1,4 +1,4 @@
-#include "fake_scanner.hpp"
+#include "tests/driver/device/fake_scanner.hpp"
 
 #include "driver/protocol/descriptor_hunter.hpp"
 #include "driver/protocol/encode_normal.hpp"

@@ -6,7 +6,7 @@
 #include "driver/protocol/reply.hpp"
 #include "driver/protocol/request.hpp"
 #include "driver/protocol/request_parser.hpp"
-#include "memory_link.hpp"
+#include "tests/driver/device/memory_link.hpp"
 
 #include <cstdint>
 #include <vector>

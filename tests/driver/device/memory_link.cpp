@@ -1,4 +1,4 @@
-#include "memory_link.hpp"
+#include "tests/driver/device/memory_link.hpp"
 
 #include "driver/link/error.hpp"
 

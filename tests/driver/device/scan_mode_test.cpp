@@ -1,3 +1,4 @@
+// Scan modes: which there are, how they are found and asked for.
 #include "driver/device/scan_mode.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Api: routes, answers and refusals, without a socket.
 #include "server/api/api.hpp"
 
 #include "driver/device/advice.hpp"

@@ -1,3 +1,4 @@
+// Targets and origins of requests.
 #include "server/api/request.hpp"
 
 #include <gtest/gtest.h>

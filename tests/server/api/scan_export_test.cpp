@@ -1,3 +1,4 @@
+// A sweep as JSON message and as CSV.
 #include "server/api/scan_export.hpp"
 
 #include <gtest/gtest.h>

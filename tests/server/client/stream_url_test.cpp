@@ -1,3 +1,4 @@
+// URLs of streams, right and wrong.
 #include "server/client/stream_url.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// LidarIds: no two lidars of one name.
 #include "server/gateway/lidar_ids.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// URLs of lidars, right and wrong.
 #include "server/gateway/lidar_url.hpp"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #include "server/hub/hub.hpp"
 
 #include "driver/async/worker.hpp"
-#include "wire_messages.hpp"
+#include "tests/server/hub/wire_messages.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/use_future.hpp>

@@ -1,6 +1,7 @@
+// LocalHub: who gets what on one worker.
 #include "server/hub/local_hub.hpp"
 
-#include "wire_messages.hpp"
+#include "tests/server/hub/wire_messages.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>

@@ -1,6 +1,7 @@
+// Mailbox: bounds, order, closing.
 #include "server/hub/mailbox.hpp"
 
-#include "wire_messages.hpp"
+#include "tests/server/hub/wire_messages.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>

@@ -1,3 +1,4 @@
+// Addresses to listen on, right and wrong.
 #include "server/net/endpoint.hpp"
 
 #include <gtest/gtest.h>

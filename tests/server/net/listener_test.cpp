@@ -1,3 +1,4 @@
+// Listener: real sockets on loopback.
 #include "server/net/listener.hpp"
 
 #include "server/net/endpoint.hpp"

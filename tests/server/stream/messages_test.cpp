@@ -1,7 +1,8 @@
+// What the gateway says and understands.
 #include "server/stream/messages.hpp"
 
-#include "known_lidar.hpp"
 #include "sweepcast/v1/stream.pb.h"
+#include "tests/server/stream/known_lidar.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

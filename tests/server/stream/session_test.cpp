@@ -2,8 +2,8 @@
 #include "server/stream/session.hpp"
 
 #include "driver/async/notifier.hpp"
-#include "known_lidar.hpp"
 #include "sweepcast/v1/stream.pb.h"
+#include "tests/server/stream/known_lidar.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/error.hpp>

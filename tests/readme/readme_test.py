@@ -1,0 +1,87 @@
+#!/usr/bin/python3
+"""Runs a program of the README as a reader would: readme_test.py LANGUAGE REPOSITORY SWEEPCAST.
+
+Takes the blocks marked <!-- tested: ... --> out of README.md: the commands of LANGUAGE, and the files. Puts the files
+and a link to proto/ into a scratch directory, runs the commands there against a gateway with a virtual lidar, and
+expects what the program promises to print.
+"""
+
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+PROMISED = re.compile(r"lidar [0-9A-F]{8} sweep (\d+): (\d+) samples, nearest (\d+)(\.\d+)? mm at \d+(\.\d+)? degrees")
+SWEEPS = 5
+TIMEOUT_S = 120
+
+
+def blocks(readme: str) -> dict[str, str]:
+    """The marked blocks, by name."""
+    marked = re.findall(r"<!-- tested: (\S+) -->\n```\w+\n(.*?)```", readme, re.DOTALL)
+    return dict(marked)
+
+
+def start_gateway(binary: str) -> tuple[subprocess.Popen, str]:
+    """A gateway on ports of its own, and its TCP port."""
+    gateway = subprocess.Popen(
+        [binary, "serve", "--lidar", "virtual:a1m8", "--http", "127.0.0.1:0", "--tcp", "127.0.0.1:0", "--log-level", "error"],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    for line in gateway.stdout:
+        if found := re.match(r"tcp: tcp://127\.0\.0\.1:(\d+)", line):
+            return gateway, found[1]
+    raise SystemExit("the gateway did not start")
+
+
+def run(commands: str, port: str, folder: pathlib.Path) -> list[re.Match]:
+    """Runs the commands until enough lines were promised; returns those lines."""
+    script = "set -e\n" + commands.replace("8081", port)
+    # Debian's python3 has Debian's packages, whatever other python may be first on the path.
+    environment = dict(os.environ, PATH="/usr/bin:" + os.environ["PATH"])
+    shell = subprocess.Popen(
+        ["timeout", str(TIMEOUT_S), "sh", "-c", script], cwd=folder, env=environment, stdout=subprocess.PIPE, text=True
+    )
+    promised = []
+    for line in shell.stdout:
+        print(line, end="")
+        found = PROMISED.match(line)
+        if not found:
+            raise SystemExit("this is not what the README promises")
+        promised.append(found)
+        if len(promised) == SWEEPS:
+            break
+    shell.terminate()
+    shell.wait()
+    return promised
+
+
+def main() -> None:
+    language, repository, binary = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3]
+    marked = blocks((repository / "README.md").read_text(encoding="utf-8"))
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = pathlib.Path(scratch)
+        (folder / "proto").symlink_to(repository / "proto")
+        for name, text in marked.items():
+            if "." in name:
+                (folder / name).write_text(text, encoding="utf-8")
+        gateway, port = start_gateway(binary)
+        try:
+            lines = run(marked[language], port, folder)
+        finally:
+            gateway.terminate()
+            gateway.wait()
+    if len(lines) < SWEEPS:
+        raise SystemExit(f"{len(lines)} sweeps of {SWEEPS} came")
+    sequences = [int(line[1]) for line in lines]
+    if sequences != list(range(sequences[0], sequences[0] + SWEEPS)):
+        raise SystemExit(f"the sweeps are {sequences}")
+    if any(int(line[2]) < 100 for line in lines):
+        raise SystemExit("a sweep has too few samples")
+
+
+if __name__ == "__main__":
+    main()
