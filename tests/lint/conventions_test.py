@@ -32,6 +32,7 @@ BROKEN = [
     ("deploy/run", "#!/bin/sh\n# runs\n", "a script says what it is for", 1),
     ("deploy/run", "#!/usr/bin/env bash\nset -e\n", "a script says what it is for", 1),
     ("tests/CMakeLists.txt", "# x\nset(rooms ${PROJECT_SOURCE_DIR}/../rooms)\n", "no path out of the tree", 2),
+    ("server/hub/a.cpp", "// x\nif (co_await ready()) {\n", "no co_await in a condition", 2),
     ("README.md", "Run `/home/anna/sweepcast/deploy/run`.\n", "no path of one machine", 1),
 ]
 
