@@ -19,9 +19,6 @@ std::string_view next_step_after(error_code code) {
     if (code == errc::protection_stop) {
         return "see that nothing blocks the lidar, then reset it; if this comes back, it is broken";
     }
-    if (code == errc::not_ready) {
-        return "look at the lidar's state and try again";
-    }
     if (code == errc::superseded) {
         return "look at the lidar's state";
     }
@@ -35,6 +32,13 @@ std::string_view next_step_after(error_code code) {
 
 Problem advice(error_code code) {
     return {code, code.message(), std::string(next_step_after(code))};
+}
+
+Problem not_ready(Phase phase) {
+    return {
+        make_error_code(errc::not_ready),
+        "the lidar is still " + std::string(name(phase)),
+        "the command stays in force; its state tells when it has taken effect"};
 }
 
 Problem unknown_mode(std::string_view name, const std::vector<ScanMode>& modes) {

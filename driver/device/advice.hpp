@@ -1,6 +1,7 @@
 // Advice: turns the errors of a lidar's life into what an operator should read.
 #pragma once
 
+#include "driver/device/device_state.hpp"
 #include "driver/device/scan_mode.hpp"
 #include "driver/protocol/result.hpp"
 
@@ -11,6 +12,9 @@ namespace sweepcast::device {
 
 /// The cause in words and the next step, for any error of the device and of its link.
 [[nodiscard]] Problem advice(error_code code);
+
+/// A command has not taken effect in time: the lidar is still in this phase.
+[[nodiscard]] Problem not_ready(Phase phase);
 
 /// There is no scan mode called `name`; names those there are.
 [[nodiscard]] Problem unknown_mode(std::string_view name, const std::vector<ScanMode>& modes);

@@ -31,7 +31,7 @@ asio::awaitable<Result<void>> Conversation::silence() {
     }
     unread_ = {};
     const auto give_up = Clock::now() + drain_limit;
-    for (;;) {
+    while (Clock::now() < give_up) {  // a source that never pauses must not hold us here
         const auto quiet_at = Clock::now() + quiet_time;
         const auto got = co_await link_.read_some(buffer_, std::min(quiet_at, give_up));
         if (got.has_error() && got.error() == link::errc::timed_out) {
@@ -41,6 +41,7 @@ asio::awaitable<Result<void>> Conversation::silence() {
             co_return got.error();
         }
     }
+    co_return Result<void>{};
 }
 
 asio::awaitable<Result<std::vector<std::uint8_t>>> Conversation::ask(
@@ -109,6 +110,9 @@ Conversation::hunt(const protocol::Expectation& expected, Clock::time_point dead
         if (step.found) {
             keep(bytes->subspan(step.consumed));
             co_return *step.found;
+        }
+        if (Clock::now() >= deadline) {  // bytes without end are no answer either
+            co_return make_error_code(link::errc::timed_out);
         }
     }
 }

@@ -69,17 +69,12 @@ Device::Device(
 
 asio::awaitable<void> Device::run() {
     while (!wanted_.shutdown) {
-        const auto problem = co_await live();
+        const auto problem = co_await live_guarded();
         wanted_.reset = false;  // the next attempt begins from scratch anyway
         if (wanted_.shutdown) {
             break;
         }
-        log_->warn(
-            "{}; trying again in {} ms. {}",
-            problem.cause,
-            options_.retry_delay.count(),
-            problem.hint
-        );
+        tell_failure(problem);
         set_phase(Phase::failed, problem);
         co_await commanded_.wait_until(Clock::now() + options_.retry_delay);
     }
@@ -89,6 +84,7 @@ asio::awaitable<void> Device::run() {
 void Device::shut_down() {
     wanted_.shutdown = true;
     poke();
+    changed_.notify();  // whoever waits for a command to take effect need wait no more
 }
 
 asio::awaitable<Result<void, Problem>> Device::start(std::string mode) {
@@ -152,12 +148,27 @@ Device::settle(std::function<bool()> reached, std::chrono::milliseconds limit) {
         if (failed && state_version_ != version) {
             co_return Problem{make_error_code(errc::not_ready), state_.cause, state_.hint};
         }
+        if (!state_.modes.empty() && wanted_mode() == nullptr) {
+            // Asked for before it was known which modes there are.
+            co_return unknown_mode(std::exchange(wanted_.mode, ""), state_.modes);
+        }
         const bool changed = co_await changed_.wait_until(deadline);
-        if (!changed) {
-            co_return advice(errc::not_ready);
+        if (!changed && !reached()) {
+            co_return not_ready(state_.phase);
         }
     }
     co_return Result<void, Problem>{};
+}
+
+/// live(), with what must not happen (a broken invariant, no memory) made a failure like others.
+asio::awaitable<Problem> Device::live_guarded() {
+    try {
+        co_return co_await live();
+    } catch (const boost::system::system_error&) {
+        throw;  // cancelled: the owner ends this life
+    } catch (const std::exception& failure) {
+        co_return Problem{make_error_code(errc::internal), failure.what(), "please report this"};
+    }
 }
 
 /// One connection, from opening the port to losing it. Returns what ended it.
@@ -170,7 +181,14 @@ asio::awaitable<Problem> Device::live() {
     const auto link = std::move(*opened);
     const Lend lend(link_, *link);
     Conversation talk(*link);
+    auto problem = co_await hold(talk);
+    // However it ended: nobody wants the motor to turn now. The line may be gone, too.
+    (void)co_await set_motor(talk, false);
+    co_return problem;
+}
 
+/// Identifies the lidar and does what is wanted of it, until the line breaks or it does not answer.
+asio::awaitable<Problem> Device::hold(Conversation& talk) {
     auto identity = co_await identify(talk);
     while (!identity && identity.error() == link::errc::interrupted && !wanted_.shutdown) {
         identity = co_await identify(talk);
@@ -179,17 +197,13 @@ asio::awaitable<Problem> Device::live() {
         co_return advice(identity.error());
     }
     adopt(std::move(*identity));
-
-    for (;;) {
+    while (!wanted_.shutdown) {
         const auto step = co_await next_step(talk);
         if (!step && step.error() != link::errc::interrupted) {
             co_return advice(step.error());
         }
-        if (wanted_.shutdown) {
-            (void)co_await set_motor(talk, false);  // the line may be gone: nothing more to do then
-            co_return Problem{};
-        }
     }
+    co_return Problem{};
 }
 
 asio::awaitable<Result<void>> Device::next_step(Conversation& talk) {
@@ -205,23 +219,37 @@ asio::awaitable<Result<void>> Device::next_step(Conversation& talk) {
     co_return co_await idle(talk, Phase::idle);
 }
 
-/// Motor off; waits for a command, and notices when the line breaks.
+/// Motor off; waits for a command. Asks now and then whether the lidar is still there and well: an
+/// idle one says nothing by itself when its cable is pulled or its protection stop ends.
 asio::awaitable<Result<void>> Device::idle(Conversation& talk, Phase phase) {
     if (auto off = co_await set_motor(talk, false); !off) {
         co_return off;
     }
+    const auto status = state_.health->status;
     set_phase(phase, phase == Phase::protection_stop ? advice(errc::protection_stop) : Problem{});
-    for (;;) {
-        // No deadline: an idle lidar says nothing, for as long as nobody wants anything of it.
-        const auto bytes = co_await talk.read(Clock::time_point::max());
-        if (!bytes) {
-            co_return bytes.error();
+    while (state_.health->status == status) {
+        const auto ask_at = Clock::now() + options_.health_interval;
+        auto heard = co_await talk.read(ask_at);
+        while (heard) {  // leftovers of a scan or of a boot
+            heard = co_await talk.read(ask_at);
         }
+        if (heard.error() != link::errc::timed_out) {
+            co_return heard.error();
+        }
+        const auto health = co_await ask_health(talk);
+        if (!health) {
+            co_return health.error();
+        }
+        state_.health = *health;
     }
+    co_return Result<void>{};
 }
 
 asio::awaitable<Result<void>> Device::scan(Conversation& talk) {
     const auto* mode = wanted_mode();
+    if (mode == nullptr) {
+        mode = fastest_mode(state_.modes);
+    }
     if (mode == nullptr) {
         co_return make_error_code(errc::unknown_mode);
     }
@@ -237,20 +265,13 @@ asio::awaitable<Result<void>> Device::scan(Conversation& talk) {
         const auto type = static_cast<protocol::AnswerType>(descriptor->type);
         ended = co_await deliver_sweeps(talk, type, *mode);
     }
-    const bool line_is_up =
-        ended.error() == link::errc::interrupted || ended.error() == link::errc::timed_out;
-    if (!line_is_up) {
+    if (ended.error() == link::errc::disconnected) {
         co_return ended;
     }
     set_phase(Phase::stopping);
     if (auto silent = co_await talk.silence();
         !silent && silent.error() != link::errc::interrupted) {
         co_return silent;
-    }
-    if (!wanted_.scanning || wanted_.shutdown) {
-        if (auto off = co_await set_motor(talk, false); !off) {
-            co_return off;
-        }
     }
     if (ended.error() == link::errc::timed_out) {
         co_return make_error_code(descriptor ? errc::stream_silent : errc::no_answer);
@@ -282,11 +303,15 @@ Device::deliver_sweeps(Conversation& talk, protocol::AnswerType type, const Scan
             {std::chrono::time_point_cast<std::chrono::microseconds>(now), per_byte},
             decoded
         );
-        if (!decoded.samples.empty()) {
-            deadline = now + silence_limit;
-            if (state_.phase != Phase::scanning) {
-                set_phase(Phase::scanning);
+        if (decoded.samples.empty()) {
+            if (now >= deadline) {  // bytes alone are no scan
+                co_return make_error_code(link::errc::timed_out);
             }
+            continue;
+        }
+        deadline = now + silence_limit;
+        if (state_.phase != Phase::scanning) {
+            set_phase(Phase::scanning);
         }
         finished.clear();
         assembler.push(decoded, finished);
@@ -320,20 +345,21 @@ asio::awaitable<Result<void>> Device::reboot(Conversation& talk) {
     }
 }
 
-/// An A1's motor hangs on the adapter's DTR line, and runs while that is released (protocol.md 5).
-/// Where the line has no DTR (a bridge, a pseudo terminal) the PWM request is tried: who cannot
-/// obey it ignores it.
+/// An A1's motor hangs on the adapter's DTR line and runs while that is released; an A2's on its
+/// accessory board, which takes a request. Both are tried, as the field's drivers do: DTR is
+/// harmless to an A2, and an A1 ignores the request (protocol.md 5).
 asio::awaitable<Result<void>> Device::set_motor(Conversation& talk, bool on) {
-    auto switched = link_->set_dtr(!on);
-    if (!switched && switched.error() == link::errc::no_modem_lines) {
-        const auto request = protocol::set_motor_pwm_request(on ? usual_pwm : 0);
-        switched = co_await talk.send(request);
+    const auto released = link_->set_dtr(!on);
+    if (!released && released.error() != link::errc::no_modem_lines) {
+        co_return released;
     }
-    if (switched) {
+    const auto request = protocol::set_motor_pwm_request(on ? usual_pwm : 0);
+    const auto sent = co_await talk.send(request);
+    if (sent) {
         asio::steady_timer pause(co_await asio::this_coro::executor, motor_pause);
         co_await pause.async_wait(asio::use_awaitable);
     }
-    co_return switched;
+    co_return sent;
 }
 
 void Device::adopt(Identity identity) {
@@ -348,13 +374,14 @@ void Device::adopt(Identity identity) {
     state_.info = identity.info;
     state_.health = identity.health;
     state_.modes = std::move(identity.modes);
-    if (find_mode(state_.modes, wanted_.mode) == nullptr) {
-        if (!wanted_.mode.empty()) {
-            log_->warn("{}", unknown_mode(wanted_.mode, state_.modes).cause);
-        }
-        wanted_.mode.clear();
+    told_failure_.clear();
+    const auto* mode = wanted_mode();
+    if (mode == nullptr) {
+        const auto problem = unknown_mode(wanted_.mode, state_.modes);
+        log_->warn("{}: {}; taking the fastest", problem.cause, problem.hint);
+        mode = fastest_mode(state_.modes);
     }
-    if (const auto* mode = wanted_mode()) {
+    if (mode != nullptr) {
         state_.mode = mode->name;
     }
 }
@@ -374,7 +401,12 @@ void Device::publish(protocol::Sweep sweep, protocol::AnswerType type, const Sca
 
 void Device::set_phase(Phase phase, const Problem& why) {
     if (state_.phase != phase) {
-        log_->info("{}", name(phase));
+        // Attempts that fail again as they did before are no news.
+        log_->log(
+            told_failure_.empty() ? spdlog::level::info : spdlog::level::debug,
+            "{}",
+            name(phase)
+        );
     }
     state_.phase = phase;
     state_.cause = why.cause;
@@ -383,6 +415,21 @@ void Device::set_phase(Phase phase, const Problem& why) {
     ++state_version_;
     observer_.on_state(state_);
     changed_.notify();
+}
+
+/// Warns of a failure, once for as long as the next attempts fail for the same reason.
+void Device::tell_failure(const Problem& problem) {
+    if (problem.cause == told_failure_) {
+        return;
+    }
+    told_failure_ = problem.cause;
+    log_->warn(
+        "{}{}{}; trying again every {} ms",
+        problem.cause,
+        problem.hint.empty() ? "" : ": ",
+        problem.hint,
+        options_.retry_delay.count()
+    );
 }
 
 /// Makes run() look at what is wanted.

@@ -41,6 +41,8 @@ struct DeviceOptions {
     std::string mode{};
     /// How long to wait after a failure before the next attempt.
     std::chrono::milliseconds retry_delay{2000};
+    /// How often to ask a lidar that does not scan whether it is there and well.
+    std::chrono::milliseconds health_interval{2000};
 };
 
 /// One lidar, on one executor; all members are to be called on it.
@@ -66,7 +68,7 @@ public:
     /// Errors: errc::unknown_mode, not_ready, superseded, shutting_down, or why the device failed.
     boost::asio::awaitable<Result<void, Problem>> start(std::string mode);
 
-    /// Ends the scan. Returns once the motor has been switched off.
+    /// Ends the scan. Returns once the motor has been switched off, at once if there is no lidar.
     /// Errors: errc::not_ready, superseded, shutting_down.
     boost::asio::awaitable<Result<void, Problem>> stop();
 
@@ -86,7 +88,9 @@ private:
         std::uint64_t command{};
     };
 
+    boost::asio::awaitable<Problem> live_guarded();
     boost::asio::awaitable<Problem> live();
+    boost::asio::awaitable<Problem> hold(Conversation& talk);
     boost::asio::awaitable<Result<void>> next_step(Conversation& talk);
     boost::asio::awaitable<Result<void>> idle(Conversation& talk, Phase phase);
     boost::asio::awaitable<Result<void>> scan(Conversation& talk);
@@ -100,6 +104,7 @@ private:
     void adopt(Identity identity);
     void publish(protocol::Sweep sweep, protocol::AnswerType type, const ScanMode& mode);
     void set_phase(Phase phase, const Problem& why = {});
+    void tell_failure(const Problem& problem);
     void poke();
     [[nodiscard]] const ScanMode* wanted_mode() const;
     [[nodiscard]] bool settled() const;
@@ -113,7 +118,8 @@ private:
     DeviceState state_;
     std::uint64_t state_version_{};
     std::uint64_t sequence_{};
-    link::Link* link_{};  ///< the open one, while there is one
+    std::string told_failure_;  ///< the cause that the log was last told; empty once identified
+    link::Link* link_{};        ///< the open one, while there is one
     async::Notifier commanded_;
     async::Notifier changed_;
 };

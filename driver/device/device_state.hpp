@@ -13,7 +13,7 @@
 namespace sweepcast::device {
 
 enum class Phase {
-    disconnected,     ///< the port is not open
+    disconnected,     ///< the gateway has not opened the port, or closed it at the end
     identifying,      ///< asking who and how it is
     idle,             ///< ready, motor off
     starting,         ///< motor on, waiting for the first samples

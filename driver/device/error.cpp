@@ -23,6 +23,8 @@ public:
             return "the lidar did not get there in time";
         case errc::superseded:
             return "another command came first";
+        case errc::internal:
+            return "a fault inside the gateway";
         case errc::shutting_down:
             return "the gateway is shutting down";
         }

@@ -13,6 +13,7 @@ enum class errc {
     not_ready,        ///< the command did not take effect in time
     superseded,       ///< another command came before this one took effect
     shutting_down,    ///< the gateway is ending
+    internal,         ///< a fault of ours
 };
 
 boost::system::error_code make_error_code(errc code);

@@ -23,7 +23,7 @@ struct Identity {
 /// Errors: errc::no_answer if it does not tell who it is; those of the link.
 boost::asio::awaitable<Result<Identity>> identify(Conversation& conversation);
 
-/// Asks for the health alone.
+/// Asks for the health alone: is the lidar still there, and well?
 /// Errors: errc::no_answer; those of the link.
 boost::asio::awaitable<Result<protocol::Health>> ask_health(Conversation& conversation);
 

@@ -154,8 +154,7 @@ DescriptorLink::write_all(std::span<const std::uint8_t> bytes, Deadline deadline
 }
 
 void DescriptorLink::interrupt() {
-    writing_.interrupted = writing_.pending;
-    reading_.interrupted = reading_.interrupted || reading_.pending || !writing_.pending;
+    reading_.interrupted = true;
     cancel_pending();
 }
 

@@ -39,9 +39,9 @@ public:
     [[nodiscard]] virtual boost::asio::awaitable<Result<void>>
     write_all(std::span<const std::uint8_t> bytes, Deadline deadline) = 0;
 
-    /// Ends the pending operations with errc::interrupted; if none is pending, the next read_some
-    /// ends so at once. No wake-up is lost: if a pending read completes with bytes at this moment,
-    /// the read after it is the one interrupted.
+    /// Ends the pending read with errc::interrupted; if none is pending, the next one ends so at
+    /// once. No wake-up is lost: if a pending read completes with bytes at this moment, the read
+    /// after it is the one interrupted. Writes are short and go on: half a request helps nobody.
     virtual void interrupt() = 0;
 
     /// Asserts or releases DTR, which on an A1 is the motor: it runs while DTR is released

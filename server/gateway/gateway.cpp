@@ -186,7 +186,10 @@ Result<void, Problem> Gateway::add_lidars(const MakeLogger& make_logger) {
 /// Where a lidar is and how to open it; starts the virtual ones.
 Result<LidarPlace, Problem>
 Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make_logger) {
-    LidarPlace place{number, url.text, port_name(url), false, url.is_stand_in, {}};
+    // Unique from the start, so that the name goes on meaning this lidar once it has its serial
+    // number.
+    const auto name = ids_.claim(number, port_name(url), port_name(url));
+    LidarPlace place{number, url.text, name, false, url.is_stand_in, {}};
     std::string path;
     if (const auto* wanted = std::get_if<VirtualLidarUrl>(&url.where)) {
         auto port = virtual_lidars_.add(*wanted, number, make_logger(place.port_name));

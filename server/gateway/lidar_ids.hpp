@@ -8,7 +8,7 @@
 
 namespace sweepcast::gateway {
 
-/// Safe from any thread; used when a lidar is added or identified, never while scanning.
+/// Safe from any thread; used when a lidar is added or first identified.
 class LidarIds {
 public:
     /// The id of lidar `number`: `wished` if no other lidar has it, else `longer`, else `longer`

@@ -55,12 +55,23 @@ void ManagedLidar::on_state(const device::DeviceState& state) {
     snapshot->is_virtual = place_.is_virtual;
     snapshot->is_stand_in = place_.is_stand_in;
     snapshot->state = state;
-    const auto wished =
-        state.info ? protocol::short_serial_text(state.info->serial) : place_.port_name;
-    const auto longer = state.info ? protocol::serial_text(state.info->serial) : place_.port_name;
-    snapshot->id = ids_.claim(place_.number, wished, longer);
+    claim_id(state.info);
+    snapshot->id = id_;
     snapshot_ = snapshot;
     hub_.publish(hub::StateNews{snapshot_, stream::state_message(*snapshot_)});
+}
+
+/// The port's name until the lidar is identified, then its serial number; anew only for another
+/// lidar.
+void ManagedLidar::claim_id(const std::optional<protocol::DeviceInfo>& info) {
+    const auto serial = info ? protocol::serial_text(info->serial) : std::string();
+    if (id_.empty()) {
+        id_ = place_.port_name;
+    }
+    if (!serial.empty() && serial != named_for_) {
+        named_for_ = serial;
+        id_ = ids_.claim(place_.number, protocol::short_serial_text(info->serial), serial);
+    }
 }
 
 void ManagedLidar::on_sweep(device::CapturedSweep sweep) {

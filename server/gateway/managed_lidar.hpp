@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <future>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace sweepcast::gateway {
@@ -52,6 +53,7 @@ public:
 
 private:
     void on_state(const device::DeviceState& state) override;
+    void claim_id(const std::optional<protocol::DeviceInfo>& info);
     void on_sweep(device::CapturedSweep sweep) override;
     boost::asio::awaitable<void> live();
 
@@ -62,6 +64,8 @@ private:
     std::shared_ptr<spdlog::logger> log_;
     frame::FrameEncoder encoder_;
     hub::LidarSnapshotPtr snapshot_;
+    std::string id_;
+    std::string named_for_;  ///< the serial number that id_ comes from; empty: the port's name
     bool started_{};
     std::promise<void> ended_;
     std::future<void> stopped_;

@@ -1,9 +1,12 @@
 #include "server/stream/session.hpp"
 
+#include "server/frame/error.hpp"
 #include "server/stream/messages.hpp"
 
 #include <boost/asio/experimental/awaitable_operators.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
 
 #include <chrono>
 #include <variant>
@@ -40,6 +43,8 @@ asio::awaitable<std::string> deliver(Transport& transport, hub::Mailbox& mailbox
     for (;;) {
         const auto message = co_await mailbox.next();
         if (!message) {
+            // While the other half still reads: a WebSocket's farewell wants an answer.
+            co_await transport.close(mailbox.close_reason());
             co_return mailbox.close_reason();
         }
         auto sent = co_await transport.send(*message);
@@ -53,6 +58,11 @@ asio::awaitable<std::string> deliver(Transport& transport, hub::Mailbox& mailbox
     }
 }
 
+asio::awaitable<void> until_cancelled() {
+    asio::steady_timer never(co_await asio::this_coro::executor, Clock::time_point::max());
+    co_await never.async_wait(asio::use_awaitable);
+}
+
 /// Hears what the client wants. Returns why it ended.
 asio::awaitable<std::string> listen(
     Transport& transport,
@@ -62,6 +72,14 @@ asio::awaitable<std::string> listen(
 ) {
     for (;;) {
         const auto bytes = co_await transport.receive();
+        if (!bytes && bytes.error().category() == frame::frame_category()) {
+            // Not our framing: say so before the connection ends, which deliver() sees to.
+            const auto reason = bytes.error().message();
+            const auto farewell = closing_message(reason);
+            mailbox.push_control(farewell);
+            mailbox.close(reason);
+            co_await until_cancelled();
+        }
         if (!bytes) {
             co_return bytes.error().message();
         }
@@ -101,7 +119,6 @@ asio::awaitable<void> serve_subscriber(
         mailbox.counts().frames_taken,
         mailbox.counts().frames_dropped
     );
-    co_await transport.close(reason);
 }
 
 }  // namespace sweepcast::stream

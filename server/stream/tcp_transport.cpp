@@ -5,10 +5,14 @@
 
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/buffer.hpp>
+#include <boost/asio/experimental/awaitable_operators.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 
 #include <array>
+#include <chrono>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <utility>
@@ -23,6 +27,7 @@ namespace {
 constexpr int kernel_send_buffer = 128 * 1024;
 /// The kernel's clock for data that the peer does not take (zero window included).
 constexpr unsigned stall_limit_ms = 120'000;
+constexpr std::chrono::milliseconds farewell_limit{500};
 constexpr int keepalive_idle_s = 30;
 constexpr int keepalive_interval_s = 10;
 
@@ -68,13 +73,25 @@ public:
     }
 
     asio::awaitable<void> close(const std::string&) override {
+        using namespace asio::experimental::awaitable_operators;
         error_code ignored;  // the peer may have gone already
-        socket_.shutdown(tcp::socket::shutdown_both, ignored);
-        socket_.close(ignored);
-        co_return;
+        socket_.shutdown(tcp::socket::shutdown_send, ignored);
+        // Closing with bytes unread would make the kernel throw away what we sent last.
+        asio::steady_timer limit(socket_.get_executor(), farewell_limit);
+        co_await (drain() || limit.async_wait(asio::use_awaitable));
     }
 
 private:
+    asio::awaitable<void> drain() {
+        std::array<std::uint8_t, 1024> discarded;
+        for (error_code ended; !ended;) {
+            co_await socket_.async_read_some(
+                asio::buffer(discarded),
+                asio::redirect_error(asio::use_awaitable, ended)
+            );
+        }
+    }
+
     tcp::socket socket_;
     frame::DelimitedReader reader_{longest_client_message};
 };

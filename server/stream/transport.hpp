@@ -23,7 +23,8 @@ public:
     /// Errors: the connection's end, or a message that is too long or cut.
     virtual boost::asio::awaitable<Result<std::string>> receive() = 0;
 
-    /// Ends the connection in good order, within a second.
+    /// Ends the connection in good order, within a second: what was sent arrives, and a WebSocket
+    /// says why. A receive() may be under way and then ends.
     virtual boost::asio::awaitable<void> close(const std::string& reason) = 0;
 };
 

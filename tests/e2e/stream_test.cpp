@@ -168,7 +168,7 @@ TEST(Stream, AWrongWishIsRefusedAndTheConnectionLives) {
     EXPECT_GT(client.next_sweep().scan.sweep.samples.size(), 100U);
 }
 
-TEST(Stream, BytesThatAreNoMessageEndTheConnectionWithAReason) {
+TEST(Stream, BytesThatAreNoMessageEndTheirOwnConnectionOnly) {
     GatewayProcess gateway({"--lidar", "virtual:a1m8"});
     HttpConnection garbage(gateway.tcp);
     EXPECT_THROW(garbage.send_raw("\xff\xff\xff\xff\xff\xff\xff\xff\xff\xff"), std::exception);

@@ -8,6 +8,7 @@
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <spdlog/logger.h>
@@ -15,6 +16,7 @@
 #include <chrono>
 #include <exception>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -36,12 +38,15 @@ public:  // the tests' coroutines are lambdas, which inherit no access
         changed.notify();
     }
     void on_sweep(CapturedSweep sweep) override {
+        if (sweep_throws) {
+            throw std::length_error("no room for a sweep");
+        }
         sweeps.push_back(std::move(sweep));
         changed.notify();
     }
 
-    Device& make_device(DeviceOptions options = {}) {
-        options.retry_delay = 1ms;
+    Device& make_device(DeviceOptions options = {.retry_delay = 1ms}) {
+        options.health_interval = 10ms;
         auto open = [this]() -> Result<std::unique_ptr<link::Link>, Problem> {
             ++opened;
             if (open_problem) {
@@ -100,6 +105,7 @@ public:  // the tests' coroutines are lambdas, which inherit no access
     std::vector<CapturedSweep> sweeps;
     std::optional<Problem> open_problem;
     int opened{};
+    bool sweep_throws{};
 };
 
 TEST_F(DeviceTest, IdentifiesThenScansThenDeliversSweeps) {
@@ -132,7 +138,8 @@ TEST_F(DeviceTest, EndsWithTheScanStoppedAndTheMotorOff) {
     make_device();
     play(until_phase(Phase::scanning));
 
-    EXPECT_EQ(scanner.requests.back().command, Command::stop);
+    EXPECT_EQ(scanner.count(Command::stop), 2U);  // before identifying, and at the end
+    EXPECT_EQ(scanner.requests.back(), protocol::set_motor_pwm_request(0));
     EXPECT_EQ(line.dtr, true);  // asserted: an A1's motor is off
     EXPECT_EQ(phases.back(), Phase::disconnected);
 }
@@ -155,7 +162,7 @@ TEST_F(DeviceTest, SwitchesTheMotorByRequestWhereTheLineHasNoDtr) {
 }
 
 TEST_F(DeviceTest, StaysIdleWhenNotToldToScan) {
-    make_device({.scan_at_once = false});
+    make_device({.scan_at_once = false, .retry_delay = 1ms});
     play(until_phase(Phase::idle));
 
     EXPECT_EQ(scanner.count(Command::express_scan), 0U);
@@ -227,7 +234,7 @@ TEST_F(DeviceTest, FailsWithAdviceWhenNothingAnswers) {
 
 TEST_F(DeviceTest, StartTellsWhyAFailedLidarCannotBeStarted) {
     open_problem = Problem{make_error_code(errc::no_answer), "no such port", "plug it in"};
-    make_device({.scan_at_once = false});
+    make_device({.scan_at_once = false, .retry_delay = 1ms});
     play([](DeviceTest& test) -> asio::awaitable<void> {
         const auto started = co_await test.device->start("");
         EXPECT_FALSE(started);
@@ -286,7 +293,7 @@ TEST_F(DeviceTest, ResetSaysSoWhenTheFaultStays) {
 }
 
 TEST_F(DeviceTest, ResetOfAnIdleLidarLeavesItIdle) {
-    make_device({.scan_at_once = false});
+    make_device({.scan_at_once = false, .retry_delay = 1ms});
     play([](DeviceTest& test) -> asio::awaitable<void> {
         co_await test.until_phase(Phase::idle);
         EXPECT_TRUE(co_await test.device->reset());
@@ -305,13 +312,67 @@ TEST_F(DeviceTest, AStopDuringStartingWins) {
     }(*this));
 }
 
-TEST_F(DeviceTest, SilenceInMidScanIsAFailureWithACause) {
-    make_device();
+TEST_F(DeviceTest, SilenceInMidScanIsAFailureWithACauseAndTheMotorOff) {
+    make_device({.retry_delay = 1h});
     play([](DeviceTest& test) -> asio::awaitable<void> {
         co_await test.until_phase(Phase::scanning);  // the fake sends three turns and falls silent
         co_await test.until_phase(Phase::failed);
         EXPECT_THAT(test.device->state().cause, HasSubstr("no samples"));
         EXPECT_THAT(test.device->state().hint, HasSubstr("motor"));
+        EXPECT_EQ(test.line.dtr, true);
+        EXPECT_EQ(test.scanner.requests.back(), protocol::set_motor_pwm_request(0));
+    }(*this));
+}
+
+TEST_F(DeviceTest, AModeAskedForBeforeTheModesAreKnownIsRefusedOnceTheyAre) {
+    make_device({.scan_at_once = false, .retry_delay = 1ms});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        const auto started = co_await test.device->start("Turbo");
+        EXPECT_FALSE(started);
+        EXPECT_EQ(started.error().code, errc::unknown_mode);
+    }(*this));
+}
+
+TEST_F(DeviceTest, AnIdleLidarThatFallsSilentIsNoticed) {
+    make_device({.scan_at_once = false, .retry_delay = 1ms});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::idle);
+        test.scanner.answers = false;
+        co_await test.until_phase(Phase::failed);
+    }(*this));
+}
+
+TEST_F(DeviceTest, AProtectionStopThatEndsByItselfIsNoticed) {
+    scanner.health = {protocol::HealthStatus::error, 0x8001};
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::protection_stop);
+        test.scanner.health = {};
+        co_await test.until_phase(Phase::scanning);
+    }(*this));
+    EXPECT_EQ(scanner.count(Command::reset), 0U);
+}
+
+TEST_F(DeviceTest, AnExceptionOfTheObserverIsAFailureLikeOthers) {
+    make_device();
+    sweep_throws = true;
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::failed);
+        EXPECT_EQ(test.device->state().cause, "no room for a sweep");
+        test.sweep_throws = false;
+        co_await test.until([&test] { return !test.sweeps.empty(); });
+    }(*this));
+}
+
+TEST_F(DeviceTest, ShuttingDownEndsTheWaitOfACommand) {
+    scanner.turns_at_start = 0;
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::starting);
+        asio::post(test.context, [&test] { test.device->shut_down(); });
+        const auto started = co_await test.device->start("");
+        EXPECT_FALSE(started);
+        EXPECT_EQ(started.error().code, errc::shutting_down);
     }(*this));
 }
 

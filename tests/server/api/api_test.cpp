@@ -178,6 +178,12 @@ TEST_F(ApiTest, SaysWhichMethodsAPathTakes) {
     EXPECT_THAT(response.headers, ElementsAre(testing::Pair("Allow", "POST")));
 }
 
+TEST_F(ApiTest, WhereGetIsAllowedSoIsHead) {
+    const auto response = ask("DELETE", "/api/v1/lidars");
+    EXPECT_EQ(response.status, 405);
+    EXPECT_THAT(response.headers, ElementsAre(testing::Pair("Allow", "GET, HEAD")));
+}
+
 struct Mapped {
     device::errc code;
     int status;

@@ -28,6 +28,23 @@ TEST(ParseStreamUrl, AWebSocketGoesToTheStreamUnlessAPathIsGiven) {
     );
 }
 
+TEST(ParseStreamUrl, AQueryWithoutAPathGoesToTheStream) {
+    EXPECT_EQ(parse_stream_url("ws://robot:1?lidar=X")->target, "/api/v1/stream?lidar=X");
+    EXPECT_EQ(parse_stream_url("ws://robot:1/?lidar=X")->target, "/api/v1/stream?lidar=X");
+}
+
+TEST(ParseStreamUrl, ATcpUrlTakesNoQueryAndTheHintNamesTheOption) {
+    const auto url = parse_stream_url("tcp://robot:8081?lidar=X");
+    ASSERT_FALSE(url);
+    EXPECT_NE(url.error().cause.find("tcp://robot:8081?lidar=X"), std::string::npos);
+    EXPECT_NE(url.error().hint.find("--lidar"), std::string::npos);
+}
+
+TEST(StreamUrl, AnIpv6AddressHasItsBracketsInUrls) {
+    EXPECT_EQ(parse_stream_url("ws://[::1]:8080")->url_host(), "[::1]");
+    EXPECT_EQ(parse_stream_url("ws://robot")->url_host(), "robot");
+}
+
 TEST(ParseStreamUrl, AnIpv6AddressLosesItsBrackets) {
     EXPECT_EQ(parse_stream_url("tcp://[::1]:8081")->host, "::1");
 }

@@ -18,6 +18,15 @@ TEST(ParseEndpoint, TakesLocalhostForLoopback) {
     EXPECT_EQ(to_text(*parse_endpoint("localhost:1234")), "127.0.0.1:1234");
 }
 
+TEST(Callable, AnUnspecifiedAddressIsLoopbackToClientsHere) {
+    EXPECT_EQ(to_text(callable(*parse_endpoint("0.0.0.0:8080"))), "127.0.0.1:8080");
+    EXPECT_EQ(to_text(callable(*parse_endpoint("[::]:8080"))), "[::1]:8080");
+}
+
+TEST(Callable, AnyOtherAddressStays) {
+    EXPECT_EQ(to_text(callable(*parse_endpoint("192.0.2.7:8080"))), "192.0.2.7:8080");
+}
+
 class BadEndpointTest : public testing::TestWithParam<const char*> {};
 
 TEST_P(BadEndpointTest, IsRefusedWithAnExample) {

@@ -10,11 +10,15 @@
 #include <boost/asio/write.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <list>
 #include <memory>
 #include <set>
+#include <sstream>
 #include <string>
 
 namespace sweepcast::net {
@@ -35,7 +39,9 @@ protected:
             }));
         }
     }
-    ~ListenerTest() override {
+    ~ListenerTest() override { stop(); }
+
+    void stop() {
         if (listener) {
             listener->close();
         }
@@ -59,7 +65,7 @@ protected:
                     asio::redirect_error(asio::use_awaitable, gone)
                 );
             },
-            std::make_shared<spdlog::logger>("test")
+            std::make_shared<spdlog::logger>("test", sink)
         );
         listener = std::move(*opened);
         listener->start();
@@ -76,6 +82,9 @@ protected:
         return name;
     }
 
+    std::ostringstream log;  ///< to be read once the workers have stopped
+    std::shared_ptr<spdlog::sinks::ostream_sink_mt> sink =
+        std::make_shared<spdlog::sinks::ostream_sink_mt>(log);
     Workers workers;
     std::unique_ptr<Listener> listener;
     asio::io_context context;
@@ -92,6 +101,22 @@ TEST_F(ListenerTest, RefusesMoreConnectionsThanAllowed) {
     listen(1);
     EXPECT_EQ(connect(), '0');
     EXPECT_EQ(connect(), '-');
+}
+
+TEST_F(ListenerTest, ARushOfRefusedConnectionsIsFewLines) {
+    listen(1);
+    connect();
+    const auto begin = std::chrono::steady_clock::now();
+    for (int i = 0; i < 50; ++i) {
+        EXPECT_EQ(connect(), '-');
+    }
+    const auto seconds =
+        std::chrono::floor<std::chrono::seconds>(std::chrono::steady_clock::now() - begin);
+    stop();
+    const auto lines = std::ranges::count(log.str(), '\n');
+    EXPECT_GE(lines, 1);
+    EXPECT_LE(lines, 2 + seconds.count());
+    EXPECT_THAT(log.str(), HasSubstr("connections refused: 1;"));
 }
 
 TEST_F(ListenerTest, SaysThatAPortIsInUse) {

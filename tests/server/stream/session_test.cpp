@@ -2,6 +2,7 @@
 #include "server/stream/session.hpp"
 
 #include "driver/async/notifier.hpp"
+#include "server/frame/error.hpp"
 #include "sweepcast/v1/stream.pb.h"
 #include "tests/server/stream/known_lidar.hpp"
 
@@ -38,6 +39,9 @@ public:
         co_return Result<void>{};
     }
     asio::awaitable<Result<std::string>> receive() override {
+        if (garbled) {
+            co_return make_error_code(frame::errc::length_malformed);
+        }
         while (incoming.empty()) {
             if (gone) {
                 co_return asio::error::make_error_code(asio::error::eof);
@@ -55,6 +59,7 @@ public:
 
     bool reads{true};
     bool gone{};
+    bool garbled{};
     std::deque<std::string> incoming;
     std::vector<v1::ServerMessage> sent;
     std::string closed_for;
@@ -187,6 +192,14 @@ TEST_F(SessionTest, EndsWhenTheClientGoes) {
     run();
     EXPECT_TRUE(ended());
     EXPECT_EQ(hub.subscribers(), 0U);
+}
+
+TEST_F(SessionTest, SaysWhyItEndsAConnectionThatDoesNotSpeakTheProtocol) {
+    transport.garbled = true;
+    serve();
+    ASSERT_TRUE(ended());
+    EXPECT_TRUE(transport.sent.back().has_closing());
+    EXPECT_EQ(transport.closed_for, transport.sent.back().closing().reason());
 }
 
 TEST_F(SessionTest, EndsWithAFarewellWhenTheGatewayDoes) {

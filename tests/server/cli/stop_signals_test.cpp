@@ -1,0 +1,78 @@
+// StopSignals: real signals, to this very process.
+#include "server/cli/stop_signals.hpp"
+
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <stdexcept>
+
+namespace sweepcast::cli {
+namespace {
+
+namespace asio = boost::asio;
+
+asio::awaitable<void> set(bool& ran) {
+    ran = true;
+    co_return;
+}
+
+/// Waits for ever, and notes how it went.
+asio::awaitable<void> hang(bool& begun, bool& finished) {
+    begun = true;
+    std::raise(SIGINT);
+    asio::steady_timer never(
+        co_await asio::this_coro::executor,
+        asio::steady_timer::duration::max()
+    );
+    co_await never.async_wait(asio::use_awaitable);
+    finished = true;
+}
+
+asio::awaitable<void> fail() {
+    throw std::runtime_error("broken");
+    co_return;
+}
+
+TEST(StopSignals, ATaskRunsToItsEnd) {
+    StopSignals signals;
+    bool ran = false;
+    EXPECT_TRUE(signals.run(set(ran)));
+    EXPECT_TRUE(ran);
+}
+
+TEST(StopSignals, ASignalEndsATaskThatWaits) {
+    StopSignals signals;
+    bool begun = false;
+    bool finished = false;
+    EXPECT_FALSE(signals.run(hang(begun, finished)));
+    EXPECT_TRUE(begun);
+    EXPECT_FALSE(finished);
+    signals.wait();  // told already
+}
+
+TEST(StopSignals, ASignalBeforeATaskKeepsItFromStarting) {
+    StopSignals signals;
+    std::raise(SIGTERM);
+    bool ran = false;
+    EXPECT_FALSE(signals.run(set(ran)));
+    EXPECT_FALSE(ran);
+}
+
+TEST(StopSignals, WhatATaskThrowsIsThrownOnAtOnce) {
+    StopSignals signals;
+    EXPECT_THROW(signals.run(fail()), std::runtime_error);
+}
+
+TEST(StopSignals, ASignalBetweenTasksIsNotLost) {
+    StopSignals signals;
+    bool ran = false;
+    ASSERT_TRUE(signals.run(set(ran)));
+    std::raise(SIGTERM);
+    signals.wait();
+}
+
+}  // namespace
+}  // namespace sweepcast::cli
