@@ -61,4 +61,15 @@ std::string to_text(const tcp::endpoint& endpoint) {
                                       : fmt::format("{}:{}", address, endpoint.port());
 }
 
+tcp::endpoint callable(const tcp::endpoint& endpoint) {
+    if (!endpoint.address().is_unspecified()) {
+        return endpoint;
+    }
+    using namespace boost::asio::ip;
+    return {
+        endpoint.address().is_v6() ? address(address_v6::loopback())
+                                   : address(address_v4::loopback()),
+        endpoint.port()};
+}
+
 }  // namespace sweepcast::net

@@ -17,4 +17,9 @@ namespace sweepcast::net {
 /// The endpoint as users write it: "127.0.0.1:8080", "[::1]:8080".
 [[nodiscard]] std::string to_text(const boost::asio::ip::tcp::endpoint& endpoint);
 
+/// The endpoint as a client on this machine can call it: an unspecified address (0.0.0.0, [::]),
+/// which one can listen on but not connect to everywhere, becomes the loopback address.
+[[nodiscard]] boost::asio::ip::tcp::endpoint callable(const boost::asio::ip::tcp::endpoint& endpoint
+);
+
 }  // namespace sweepcast::net

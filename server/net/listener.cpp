@@ -103,16 +103,21 @@ asio::awaitable<void> Listener::accept() {
             co_return;
         }
         if (failed) {  // most likely out of descriptors: let some clients leave first
-            log_->warn("cannot accept a connection: {}", failed.message());
+            if (const auto times = failures_.count(std::chrono::steady_clock::now())) {
+                log_->warn("cannot accept connections ({} times): {}", *times, failed.message());
+            }
             asio::steady_timer pause(acceptor_.get_executor(), 100ms);
             co_await pause.async_wait(asio::use_awaitable);
             continue;
         }
         if (*connections_ >= max_connections_) {
-            log_->warn(
-                "refused a connection: there are {} already, the most allowed",
-                max_connections_
-            );
+            if (const auto refused = refusals_.count(std::chrono::steady_clock::now())) {
+                log_->warn(
+                    "connections refused: {}; there are {} already, the most allowed",
+                    *refused,
+                    max_connections_
+                );
+            }
             continue;
         }
         ++*connections_;

@@ -3,6 +3,7 @@
 
 #include "driver/async/worker.hpp"
 #include "driver/protocol/result.hpp"
+#include "server/net/once_per_second.hpp"
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -64,6 +65,8 @@ private:
     std::size_t max_connections_;
     Serve serve_;
     std::shared_ptr<spdlog::logger> log_;
+    OncePerSecond failures_;
+    OncePerSecond refusals_;
     /// Shared with the connections: those still open when the threads stop are destroyed after this
     /// object.
     std::shared_ptr<std::atomic<std::size_t>> connections_;
