@@ -44,14 +44,16 @@ asio::awaitable<Connected> open(StreamUrl url) {
 }
 
 Problem describe(const error_code& failed, const StreamUrl& url) {
-    auto hint =
-        fmt::format("is the gateway running there? try: curl http://{}:8080/healthz", url.host);
+    auto hint = fmt::format(
+        "is the gateway running there? try: curl http://{}:8080/healthz",
+        url.url_host()
+    );
     if (url.websocket) {
         hint = "check host, port, path and query; the path is /api/v1/stream";
     }
     return {
         failed,
-        fmt::format("cannot connect to {}:{}: {}", url.host, url.port, failed.message()),
+        fmt::format("cannot connect to {}:{}: {}", url.url_host(), url.port, failed.message()),
         hint};
 }
 

@@ -24,11 +24,22 @@ Result<StreamUrl, Problem> parse_stream_url(std::string_view text) {
     }
     url.host = parsed->host_address();
     url.port = parsed->has_port() ? std::string(parsed->port()) : (url.websocket ? "8080" : "8081");
-    url.target = parsed->encoded_target();
-    if (url.target.empty() || url.target == "/") {
-        url.target = "/api/v1/stream";
+    if (!url.websocket && parsed->has_query()) {
+        return Problem{
+            bad.code,
+            fmt::format("\"{}\": a tcp URL takes no query", text),
+            "say what to get with options, for example --lidar ID --compression none"};
+    }
+    const std::string_view path = parsed->encoded_path();
+    url.target = path.empty() || path == "/" ? "/api/v1/stream" : path;
+    if (parsed->has_query()) {
+        url.target += "?" + std::string(parsed->encoded_query());
     }
     return url;
+}
+
+std::string StreamUrl::url_host() const {
+    return host.find(':') != std::string::npos ? "[" + host + "]" : host;
 }
 
 }  // namespace sweepcast::client

@@ -26,7 +26,7 @@ public:
     }
 
     asio::awaitable<Result<void>> shake_hands(const StreamUrl& url) {
-        const auto host = url.host + ":" + url.port;
+        const auto host = url.url_host() + ":" + url.port;
         const auto [failed] =
             co_await ws_.async_handshake(host, url.target, asio::as_tuple(asio::use_awaitable));
         co_return failed ? Result<void>(failed) : Result<void>{};
