@@ -89,17 +89,12 @@ asio::awaitable<Response> Api::handle(Request request) const {
         if (method == route.method) {
             co_return co_await (this->*route.handler)(request, *id);
         }
-        allowed += (allowed.empty() ? "" : ", ") + std::string(route.method);
+        const std::string_view also = route.method;
+        allowed += allowed.empty() ? "" : ", ";
+        allowed += also == "GET" ? "GET, HEAD" : also;
     }
     if (!allowed.empty()) {
-        auto response = error_response(
-            405,
-            "method_not_allowed",
-            fmt::format("{} does not work on {}", request.method, request.path),
-            "use " + allowed
-        );
-        response.headers.emplace_back("Allow", allowed);
-        co_return response;
+        co_return method_not_allowed(request, allowed);
     }
     co_return error_response(
         404,

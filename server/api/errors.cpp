@@ -4,6 +4,8 @@
 #include "server/api/json.hpp"
 #include "sweepcast/v1/api.pb.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -37,6 +39,17 @@ Response error_response(
     response.mutable_error()->set_message(message);
     response.mutable_error()->set_hint(hint);
     return {status, "application/json", to_json(response), {}};
+}
+
+Response method_not_allowed(const Request& request, const std::string& allowed) {
+    auto response = error_response(
+        405,
+        "method_not_allowed",
+        fmt::format("{} does not work on {}", request.method, request.path),
+        "use " + allowed
+    );
+    response.headers.emplace_back("Allow", allowed);
+    return response;
 }
 
 Response error_response(const Problem& problem) {

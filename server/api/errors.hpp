@@ -19,4 +19,7 @@ namespace sweepcast::api {
 /// The answer to a command that a lidar could not carry out.
 [[nodiscard]] Response error_response(const Problem& problem);
 
+/// 405: the path is there, but takes only the methods in `allowed`, e.g. "GET, HEAD".
+[[nodiscard]] Response method_not_allowed(const Request& request, const std::string& allowed);
+
 }  // namespace sweepcast::api
