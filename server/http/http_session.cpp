@@ -15,7 +15,10 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <fmt/format.h>
 
+#include <array>
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <exception>
 #include <optional>
 #include <utility>
@@ -31,9 +34,11 @@ namespace {
 
 constexpr std::uint32_t header_limit = 16 * 1024;
 constexpr std::uint64_t body_limit = 64 * 1024;
-constexpr auto request_limit = 30s;
-constexpr auto between_requests = 60s;
+constexpr auto first_request_limit = 30s;
+constexpr auto next_request_limit = 60s;  // the wait for it included
 constexpr auto response_limit = 30s;
+constexpr auto linger_limit = 1s;
+constexpr std::size_t linger_bytes = 256 * 1024;
 
 constexpr const char* stream_path = "/api/v1/stream";
 
@@ -50,11 +55,11 @@ to_beast(api::Response response, unsigned http_version, bool keep_alive, bool he
     out.set(bhttp::field::server, std::string("sweepcast ") + version);
     out.set("X-Content-Type-Options", "nosniff");
     out.set(bhttp::field::content_type, response.content_type);
-    if (response.headers.empty()) {
-        out.set(bhttp::field::cache_control, "no-store");
-    }
     for (const auto& [name, value] : response.headers) {
         out.set(name, value);
+    }
+    if (out.count(bhttp::field::cache_control) == 0) {
+        out.set(bhttp::field::cache_control, "no-store");
     }
     out.keep_alive(keep_alive);
     const auto size = response.body.size();
@@ -119,8 +124,8 @@ public:
 
     asio::awaitable<void> run() {
         bool keep_alive = true;
-        for (auto limit = std::chrono::seconds(request_limit); keep_alive;
-             limit = between_requests) {
+        for (auto limit = std::chrono::seconds(first_request_limit); keep_alive;
+             limit = next_request_limit) {
             bhttp::request_parser<bhttp::string_body> parser;
             parser.header_limit(header_limit);
             parser.body_limit(body_limit);
@@ -152,11 +157,44 @@ public:
             const bool written = co_await write(std::move(response));
             keep_alive = written && request.keep_alive();
         }
-        error_code ignored;  // the client may have gone first
-        stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+        co_await linger();
     }
 
 private:
+    /// Ends the connection such that the last response arrives: closing while bytes of the client
+    /// are unread would reset it, and the client could lose what it has not read yet.
+    asio::awaitable<void> linger() {
+        error_code ignored;  // the client may have gone first
+        stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+        stream_.expires_after(linger_limit);
+        std::array<std::uint8_t, 16 * 1024> unwanted{};
+        const auto space = asio::buffer(unwanted);
+        for (std::size_t discarded = 0; discarded < linger_bytes;) {
+            const auto [ended, size] =
+                co_await stream_.async_read_some(space, asio::as_tuple(asio::use_awaitable));
+            if (ended) {
+                co_return;
+            }
+            discarded += size;
+        }
+    }
+
+    /// The answer where a handler broke down; the log has the cause.
+    api::Response internal_error(const BeastRequest& request, const std::exception& failure) {
+        context_.log->error(
+            "http: {} {} failed: {}",
+            view(request.method_string()),
+            view(request.target()),
+            failure.what()
+        );
+        return api::error_response(
+            500,
+            "internal_error",
+            "the gateway could not answer",
+            "its log says why"
+        );
+    }
+
     asio::awaitable<BeastResponse> answer(const BeastRequest& request) {
         const bool head = request.method() == bhttp::verb::head;
         api::Response response;
@@ -165,18 +203,7 @@ private:
         } catch (const boost::system::system_error&) {
             throw;  // cancelled: the gateway is ending
         } catch (const std::exception& failure) {
-            context_.log->error(
-                "http: {} {} failed: {}",
-                view(request.method_string()),
-                view(request.target()),
-                failure.what()
-            );
-            response = api::error_response(
-                500,
-                "internal_error",
-                "the gateway could not answer",
-                "its log says why"
-            );
+            response = internal_error(request, failure);
         }
         co_return to_beast(std::move(response), request.version(), request.keep_alive(), head);
     }
@@ -206,15 +233,16 @@ private:
                 fmt::format("open it as ws://HOST:PORT{}", stream_path)
             );
         }
-        if (looks) {
-            auto file = page_response(
-                request.path,
-                view(from[bhttp::field::accept_encoding]),
-                view(from[bhttp::field::if_none_match])
-            );
-            if (file) {
-                co_return std::move(*file);
-            }
+        auto file = page_response(
+            request.path,
+            view(from[bhttp::field::accept_encoding]),
+            view(from[bhttp::field::if_none_match])
+        );
+        if (!looks && (file || request.path == stream_path)) {
+            co_return api::method_not_allowed(request, "GET, HEAD");
+        }
+        if (file) {
+            co_return std::move(*file);
         }
         co_return co_await context_.api.handle(std::move(request));
     }
@@ -222,7 +250,7 @@ private:
     /// Turns the connection into a stream. False if it stays an HTTP connection with an error on
     /// it.
     asio::awaitable<bool> upgrade(BeastRequest request) {
-        auto settings = session_settings(request);
+        auto settings = settings_or_error(request);
         if (!settings) {
             auto refusal = to_beast(settings.error(), request.version(), false, false);
             co_await write(std::move(refusal));
@@ -240,6 +268,14 @@ private:
             );
         }
         co_return true;
+    }
+
+    Result<stream::SessionSettings, api::Response> settings_or_error(const BeastRequest& from) {
+        try {
+            return session_settings(from);
+        } catch (const std::exception& failure) {
+            return internal_error(from, failure);
+        }
     }
 
     Result<stream::SessionSettings, api::Response> session_settings(const BeastRequest& from) {

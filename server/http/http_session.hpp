@@ -22,8 +22,10 @@ struct HttpContext {
     std::shared_ptr<spdlog::logger> log;
 };
 
-/// Serves one connection to its end. Limits: 16 kB of header, 64 kB of body, 30 s for a request, 60
-/// s between requests.
+/// Serves one connection to its end. Limits: 16 kB of header, 64 kB of body; 30 s until the first
+/// request has been read, 60 s from a response until the next request has been read; 30 s for the
+/// client to take a response. A command has no limit here: the device bounds it. A WebSocket has
+/// deadlines of its own.
 boost::asio::awaitable<void> serve_http(boost::asio::ip::tcp::socket socket, HttpContext context);
 
 }  // namespace sweepcast::http

@@ -67,6 +67,31 @@ TEST_F(HttpTest, HeadIsGetWithoutTheBody) {
     EXPECT_EQ(connection.ask("GET", "/healthz").status, 200);
 }
 
+struct GetOnly {
+    std::string what, path;
+};
+
+class GetOnlyTest : public HttpTest, public testing::WithParamInterface<GetOnly> {};
+
+TEST_P(GetOnlyTest, SaysSoToOtherMethods) {
+    const auto answer = connection.ask("POST", GetParam().path);
+    EXPECT_EQ(answer.status, 405);
+    EXPECT_EQ(answer.header("allow"), "GET, HEAD");
+    EXPECT_EQ(answer.header("cache-control"), "no-store");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Paths,
+    GetOnlyTest,
+    testing::Values(
+        GetOnly{"page", "/"},
+        GetOnly{"script", "/app.js"},
+        GetOnly{"stream", "/api/v1/stream"},
+        GetOnly{"lidars", "/api/v1/lidars"}
+    ),
+    [](const auto& path) { return path.param.what; }
+);
+
 struct Wrong {
     std::string what, bytes;
     int status;
@@ -83,6 +108,7 @@ TEST_P(WrongRequestTest, GetsTheErrorShape) {
     EXPECT_THAT(answer.body, HasSubstr("\"code\": \"" + GetParam().code + "\""));
     EXPECT_THAT(answer.body, HasSubstr("\"message\""));
     EXPECT_THAT(answer.body, HasSubstr("\"hint\""));
+    EXPECT_EQ(answer.header("cache-control"), "no-store");
 }
 
 const std::string post = "POST /api/v1/lidars/virtual-a1m8/start HTTP/1.1\r\nHost: test\r\n";
@@ -105,6 +131,17 @@ INSTANTIATE_TEST_SUITE_P(
             431,
             "header_too_large"},
         Wrong{"body", post + "Content-Length: 100000\r\n\r\n", 413, "body_too_large"},
+        // The client sends all of it before it reads: the answer must not be lost to a reset.
+        Wrong{
+            "whole_body",
+            post + "Content-Length: 200000\r\n\r\n" + std::string(200'000, 'x'),
+            413,
+            "body_too_large"},
+        Wrong{
+            "whole_header",
+            "GET / HTTP/1.1\r\nHost: test\r\nX: " + std::string(200'000, 'x') + "\r\n\r\n",
+            431,
+            "header_too_large"},
         Wrong{"json", post + "Content-Length: 5\r\n\r\nhello", 400, "bad_body"},
         Wrong{"origin", post + "Origin: http://evil.example\r\n\r\n", 403, "wrong_origin"},
         Wrong{
