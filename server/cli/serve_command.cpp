@@ -2,17 +2,16 @@
 // to stop.
 #include "driver/device/probe.hpp"
 #include "server/cli/command.hpp"
+#include "server/cli/stop_signals.hpp"
 #include "server/gateway/gateway.hpp"
 #include "server/log/log.hpp"
+#include "server/net/descriptors.hpp"
 #include "server/net/endpoint.hpp"
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <boost/asio/co_spawn.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/signal_set.hpp>
-#include <boost/asio/use_future.hpp>
+#include <boost/asio/awaitable.hpp>
 #include <fmt/format.h>
 #include <google/protobuf/stubs/logging.h>
 
@@ -40,19 +39,18 @@ struct ServeArguments {
 
 constexpr const char* default_virtual = "virtual:a1m8";
 
-/// The ports where a lidar answers.
-std::vector<std::string> find_lidars(const std::shared_ptr<spdlog::logger>& log) {
-    asio::io_context context;
-    auto found =
-        asio::co_spawn(context, device::discover(context.get_executor(), log), asio::use_future);
-    context.run();
-    return found.get();
+/// Puts the ports where a lidar answers into `found`.
+asio::awaitable<void> find_lidars(
+    asio::any_io_executor executor,
+    std::shared_ptr<spdlog::logger> log,
+    std::vector<std::string>& found
+) {
+    found = co_await device::discover(executor, log);
 }
 
-/// The lidars the user named; else those that are found; else a virtual one.
+/// The lidars in these texts; a virtual one if there are none.
 Result<std::vector<gateway::LidarUrl>, Problem>
-choose_lidars(const std::vector<std::string>& named, const std::shared_ptr<spdlog::logger>& log) {
-    const auto texts = named.empty() ? find_lidars(log) : named;
+to_urls(const std::vector<std::string>& texts, const std::shared_ptr<spdlog::logger>& log) {
     std::vector<gateway::LidarUrl> urls;
     for (const auto& text : texts) {
         auto url = gateway::parse_lidar_url(text);
@@ -87,27 +85,29 @@ Result<gateway::GatewayOptions, Problem> to_options(const ServeArguments& argume
     options.threads = arguments.threads;
     options.device.scan_at_once = !arguments.idle;
     options.device.mode = arguments.mode;
-    auto lidars = choose_lidars(arguments.lidars, log::make_logger("gateway"));
-    if (!lidars) {
-        return lidars.error();
-    }
-    options.lidars = std::move(*lidars);
+    options.max_connections = net::most_connections(net::raise_descriptor_limit());
     return options;
 }
 
-/// SIGINT and SIGTERM, held back from the moment it exists so that none falls between starting and
-/// waiting.
-class StopSignals {
-public:
-    StopSignals() {
-        signals_.async_wait([](const boost::system::error_code&, int) {});
+void warn_if_open_to_others(const asio::ip::tcp::endpoint& http, spdlog::logger& log) {
+    if (!http.address().is_loopback()) {
+        log.warn(
+            "listening on {}: anyone who reaches it can also stop the lidars; \"--http "
+            "127.0.0.1:{}\" keeps it to this machine",
+            net::to_text(http),
+            http.port()
+        );
     }
-    void wait() { context_.run(); }
+}
 
-private:
-    asio::io_context context_;
-    asio::signal_set signals_{context_, SIGINT, SIGTERM};
-};
+void print_addresses(const gateway::Gateway& gateway) {
+    fmt::print(
+        "page: http://{}/\ntcp: tcp://{}\n",
+        net::to_text(net::callable(gateway.http_endpoint())),
+        net::to_text(net::callable(gateway.tcp_endpoint()))
+    );
+    std::fflush(stdout);
+}
 
 int serve(const ServeArguments& arguments) {
     if (!log::set_level(arguments.log_level)) {
@@ -123,20 +123,25 @@ int serve(const ServeArguments& arguments) {
     if (!options) {
         return report(options.error());
     }
-    auto signals = std::make_unique<StopSignals>();
+    const auto log = log::make_logger("gateway");
+    StopSignals signals;
+    auto texts = arguments.lidars;
+    if (texts.empty() && !signals.run(find_lidars(signals.executor(), log, texts))) {
+        log->info("stopped before anything was started");
+        return 0;
+    }
+    auto lidars = to_urls(texts, log);
+    if (!lidars) {
+        return report(lidars.error());
+    }
+    options->lidars = std::move(*lidars);
     auto gateway = gateway::Gateway::start(std::move(*options), log::make_logger);
     if (!gateway) {
         return report(gateway.error());
     }
-    fmt::print(
-        "page: http://{}/\ntcp: tcp://{}\n",
-        net::to_text((*gateway)->http_endpoint()),
-        net::to_text((*gateway)->tcp_endpoint())
-    );
-    std::fflush(stdout);
-    signals->wait();
-    signals.reset();  // a second signal finds the default action again and ends the program at once
-    const auto log = log::make_logger("gateway");
+    warn_if_open_to_others((*gateway)->http_endpoint(), *log);
+    print_addresses(**gateway);
+    signals.wait();
     log->info("stopping");
     (*gateway)->stop();
     log->info("stopped");

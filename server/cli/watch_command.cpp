@@ -1,5 +1,6 @@
 // `sweepcast watch`: subscribes to a gateway and prints what comes. The stream's reference client.
 #include "server/cli/command.hpp"
+#include "server/cli/stop_signals.hpp"
 #include "server/cli/watch_output.hpp"
 #include "server/client/stream_client.hpp"
 #include "server/frame/frame_decoder.hpp"
@@ -7,17 +8,14 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <boost/asio/as_tuple.hpp>
-#include <boost/asio/co_spawn.hpp>
-#include <boost/asio/experimental/awaitable_operators.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/signal_set.hpp>
-#include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/error.hpp>
 #include <fmt/core.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdint>
+#include <exception>
 #include <limits>
 #include <memory>
 #include <string>
@@ -71,17 +69,36 @@ public:
 
     /// False once there is nothing more to wait for.
     bool take(const v1::ServerMessage& message) {
+        const bool goes_on = take_in(message);
+        return can_write() && goes_on;
+    }
+
+    /// Prints what is left to print.
+    void end() {
+        if (!output_->write_error()) {
+            output_->on_end();
+            can_write();
+        }
+    }
+
+    bool fail(const Problem& problem) {
+        exit_code_ = report(problem);
+        return false;
+    }
+
+    [[nodiscard]] int exit_code() const { return exit_code_; }
+
+private:
+    bool take_in(const v1::ServerMessage& message) {
         switch (message.message_case()) {
         case v1::ServerMessage::kHello:
-            for (const auto& lidar : message.hello().lidars()) {
-                output_->on_lidar(lidar);
-            }
+            output_->on_hello(message.hello());
             return true;
         case v1::ServerMessage::kLidar:
             output_->on_lidar(message.lidar());
             return true;
         case v1::ServerMessage::kFrame:
-            return take(message.frame());
+            return take_in(message.frame());
         case v1::ServerMessage::kStats:
             output_->on_stats(message.stats());
             return true;
@@ -95,15 +112,7 @@ public:
         return true;
     }
 
-    bool fail(const Problem& problem) {
-        exit_code_ = report(problem);
-        return false;
-    }
-
-    [[nodiscard]] int exit_code() const { return exit_code_; }
-
-private:
-    bool take(const v1::Frame& frame) {
+    bool take_in(const v1::Frame& frame) {
         auto scan = decoder_.decode(frame);
         if (!scan) {
             return fail(
@@ -114,6 +123,19 @@ private:
         }
         output_->on_sweep(to_captured(std::move(*scan), frame), frame.ByteSizeLong());
         return --sweeps_left_ > 0;
+    }
+
+    /// False, and the exit code says so, if what was printed did not get through.
+    bool can_write() {
+        const auto failed = output_->write_error();
+        if (!failed) {
+            return true;
+        }
+        if (failed == boost::system::errc::broken_pipe) {
+            exit_code_ = 1;  // the reader has had enough, as `| head`: nothing to tell anyone
+            return false;
+        }
+        return fail({failed, "cannot write to standard output: " + failed.message(), ""});
     }
 
     std::unique_ptr<WatchOutput> output_;
@@ -158,33 +180,20 @@ receive_all(client::StreamUrl url, const WatchArguments& arguments, Watcher& wat
     }
 }
 
-asio::awaitable<void>
-watch_until_told(client::StreamUrl url, const WatchArguments& arguments, Watcher& watcher) {
-    using namespace asio::experimental::awaitable_operators;
-    asio::signal_set stop(co_await asio::this_coro::executor, SIGINT, SIGTERM);
-    co_await (
-        receive_all(std::move(url), arguments, watcher) ||
-        stop.async_wait(asio::as_tuple(asio::use_awaitable))
-    );
-}
-
 int watch(const WatchArguments& arguments) {
     auto url = client::parse_stream_url(arguments.url);
     if (!url) {
         return report(url.error());
     }
+    std::signal(SIGPIPE, SIG_IGN);  // a reader that goes is an error of a write
     Watcher watcher(arguments);
-    asio::io_context context;
-    std::exception_ptr failure;
-    asio::co_spawn(
-        context,
-        watch_until_told(std::move(*url), arguments, watcher),
-        [&failure](std::exception_ptr thrown) { failure = thrown; }
-    );
-    context.run();
-    if (failure) {
-        std::rethrow_exception(failure);
+    StopSignals signals;
+    try {
+        signals.run(receive_all(std::move(*url), arguments, watcher));
+    } catch (const std::exception& failure) {
+        watcher.fail({{}, fmt::format("cannot go on: {}", failure.what()), ""});
     }
+    watcher.end();
     return watcher.exit_code();
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <iterator>
 #include <unistd.h>
 
@@ -24,14 +25,11 @@ void note_drops(const v1::StreamStats& stats) {
     );
 }
 
-void write(const std::string& text) {
-    std::fwrite(text.data(), 1, text.size(), stdout);
-    std::fflush(stdout);
-}
-
 class CsvOutput final : public WatchOutput {
 public:
+    void on_hello(const v1::Hello&) override {}
     void on_lidar(const v1::Lidar&) override {}
+    void on_end() override {}
 
     void on_sweep(const device::CapturedSweep& captured, std::size_t) override {
         text_.clear();
@@ -65,7 +63,9 @@ private:
 
 class JsonOutput final : public WatchOutput {
 public:
+    void on_hello(const v1::Hello&) override {}
     void on_lidar(const v1::Lidar&) override {}
+    void on_end() override {}
 
     void on_sweep(const device::CapturedSweep& captured, std::size_t) override {
         v1::LatestScan scan;
@@ -78,9 +78,16 @@ public:
 
 class TableOutput final : public WatchOutput {
 public:
+    void on_hello(const v1::Hello& hello) override {
+        for (const auto& lidar : hello.lidars()) {
+            rows_[lidar.number()].lidar = lidar;
+        }
+        print();
+    }
+
     void on_lidar(const v1::Lidar& lidar) override {
         rows_[lidar.number()].lidar = lidar;
-        print();
+        print_if_due();
     }
 
     void on_sweep(const device::CapturedSweep& captured, std::size_t bytes) override {
@@ -96,10 +103,16 @@ public:
         shown.bytes = bytes;
         shown.missed += shown.sequence != 0 ? captured.sequence - shown.sequence - 1 : 0;
         shown.sequence = captured.sequence;
-        print();
+        print_if_due();
     }
 
     void on_stats(const v1::StreamStats&) override {}  // the table counts the gaps itself
+
+    void on_end() override {
+        if (!rows_.empty()) {
+            print();
+        }
+    }
 
 private:
     struct Row {
@@ -111,19 +124,20 @@ private:
         std::uint64_t missed{};
     };
 
-    void print() {
-        const auto now = Clock::now();
-        const bool terminal = isatty(STDOUT_FILENO) != 0;
-        if (now - printed_at_ <
-            (terminal ? std::chrono::milliseconds(100) : std::chrono::seconds(1))) {
-            return;
+    void print_if_due() {
+        const auto interval = terminal_ ? std::chrono::milliseconds(100) : std::chrono::seconds(1);
+        if (Clock::now() - printed_at_ >= interval) {
+            print();
         }
-        printed_at_ = now;
+    }
+
+    void print() {
+        printed_at_ = Clock::now();
         std::string text;
-        if (terminal && lines_ > 0) {
+        if (terminal_ && lines_ > 0) {
             text = fmt::format("\x1b[{}A", lines_);  // back up to the table's first line
         }
-        const char* end = terminal ? "\x1b[K\n" : "\n";
+        const char* end = terminal_ ? "\x1b[K\n" : "\n";
         text += fmt::format(
             "{:<12} {:<7} {:<15} {:<10} {:>6} {:>7} {:>7} {:>9} {:>7}{}",
             "lidar",
@@ -160,12 +174,20 @@ private:
         return row.lidar.cause().empty() ? text : text + "  " + row.lidar.cause();
     }
 
+    const bool terminal_ = isatty(STDOUT_FILENO) != 0;
     std::map<std::uint32_t, Row> rows_;
     Clock::time_point printed_at_{};
     std::size_t lines_{};
 };
 
 }  // namespace
+
+void WatchOutput::write(const std::string& text) {
+    const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+    if (!written || std::fflush(stdout) != 0) {
+        write_error_ = error_code(errno, boost::system::generic_category());
+    }
+}
 
 std::unique_ptr<WatchOutput> make_csv_output() {
     return std::make_unique<CsvOutput>();

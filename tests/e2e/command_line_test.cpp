@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -58,6 +60,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{{"serve", "--log-level", "loud"}, "debug"},
         Mistake{{"serve", "--threads", "0"}, "--threads"},
         Mistake{{"watch", "http://robot"}, "tcp://127.0.0.1:8081"},
+        Mistake{{"watch", "tcp://127.0.0.1:1?lidar=X"}, "--lidar"},
+        Mistake{{"watch", "tcp://[::1]:1"}, "curl http://[::1]:8080/healthz"},
         Mistake{{"watch", "tcp://127.0.0.1:1"}, "cannot connect to 127.0.0.1:1"},
         Mistake{{"probe", "/nonexistent"}, "/nonexistent"},
         Mistake{{"probe", "/etc/passwd"}, "/etc/passwd"}
@@ -70,6 +74,39 @@ TEST(CommandLine, ServeSaysThatItsAddressIsTaken) {
         call({"serve", "--lidar", "virtual:a1m8", "--http", first.http, "--tcp", "127.0.0.1:0"});
     EXPECT_EQ(second.exit_code, 1);
     EXPECT_THAT(second.log, HasSubstr(first.http));
+}
+
+TEST(CommandLine, ServeOpenToTheNetworkWarnsAndPrintsAPageThatOpens) {
+    Process serve(
+        {program(),
+         "serve",
+         "--lidar",
+         "virtual:a1m8",
+         "--http",
+         "0.0.0.0:0",
+         "--tcp",
+         "127.0.0.1:0"}
+    );
+    EXPECT_THAT(serve.wait_for_log("anyone who reaches it"), HasSubstr("--http 127.0.0.1:"));
+    EXPECT_THAT(serve.wait_for_output("page: "), StartsWith("page: http://127.0.0.1:"));
+}
+
+TEST(CommandLine, ServeTakesNoMoreConnectionsThanDescriptorsAllow) {
+    Process serve(
+        {"/bin/sh",
+         "-c",
+         "ulimit -n 100; exec '" + program() +
+             "' serve --lidar virtual:a1m8 --http 127.0.0.1:0 --tcp 127.0.0.1:0"}
+    );
+    const auto page = serve.wait_for_output("page: ");
+    const auto address = page.substr(page.find("://") + 3, page.rfind('/') - page.find("://") - 3);
+    std::vector<std::unique_ptr<HttpConnection>> clients;
+    for (int i = 0; i < 18; ++i) {
+        clients.push_back(std::make_unique<HttpConnection>(address));
+        EXPECT_EQ(clients.back()->ask("GET", "/healthz").status, 200);
+    }
+    const HttpConnection one_more(address);
+    EXPECT_THAT(serve.wait_for_log("connections refused"), HasSubstr("there are 18 already"));
 }
 
 TEST(CommandLine, ServeWithoutALidarStartsAVirtualOneAndSaysSo) {
@@ -128,6 +165,63 @@ TEST(CommandLine, WatchPrintsTheSameSamplesOverTcpAndWebSocket) {
         ASSERT_NE(begin, std::string::npos) << "the two have no sweep in common";
         EXPECT_THAT(first_of_tcp, StartsWith(websocket.substr(begin)));
     }
+}
+
+TEST(CommandLine, WatchPrintsTheWholeGreetingAndTheFinalStateToAPipe) {
+    GatewayProcess gateway({"--lidar", "virtual:a1m8", "--lidar", "virtual:a1m8"});
+    for (int i = 0; i < 2; ++i) {
+        gateway.process.wait_for_log("scanning");
+    }
+    const auto watched = call({"watch", "tcp://" + gateway.tcp, "--sweeps", "1"});
+    EXPECT_EQ(watched.exit_code, 0);
+    const auto last = watched.output.rfind("lidar  ");
+    ASSERT_NE(last, std::string::npos);
+    ASSERT_GT(last, 0U) << "only one table";
+    const auto first_table = watched.output.substr(0, last);
+    const auto last_table = watched.output.substr(last);
+    constexpr auto heading_and_both_lidars = 3;
+    EXPECT_EQ(std::ranges::count(last_table, '\n'), heading_and_both_lidars);
+    EXPECT_EQ(std::ranges::count(first_table, '\n') % heading_and_both_lidars, 0) << first_table;
+    EXPECT_NE(first_table.substr(first_table.find('\n')), last_table.substr(last_table.find('\n')))
+        << "the sweep is not in the final state";
+}
+
+/// `watch` in a shell command, where WATCH stands for it.
+Outcome call_watch(std::string shell_command, const std::string& url) {
+    const std::string name = "WATCH";
+    shell_command
+        .replace(shell_command.find(name), name.size(), "'" + program() + "' watch '" + url + "'");
+    Process shell({"/bin/sh", "-c", shell_command});
+    const int exit_code = shell.wait();
+    return {exit_code, shell.rest_of_output(), shell.rest_of_log()};
+}
+
+TEST(CommandLine, WatchSaysThatTheDiskIsFull) {
+    GatewayProcess gateway({"--lidar", "virtual:a1m8"});
+    for (const auto* form : {"--csv", "--json", ""}) {
+        const auto watched =
+            call_watch(std::string("WATCH ") + form + " > /dev/full", "tcp://" + gateway.tcp);
+        EXPECT_EQ(watched.exit_code, 1) << form;
+        EXPECT_EQ(
+            watched.log,
+            "sweepcast: cannot write to standard output: No space left on device\n"
+        ) << form;
+    }
+}
+
+TEST(CommandLine, WatchEndsQuietlyWhenItsReaderHasEnough) {
+    GatewayProcess gateway({"--lidar", "virtual:a1m8"});
+    const auto watched =
+        call_watch("(WATCH --csv; echo \"ended with $?\" >&2) | head -n 1", "tcp://" + gateway.tcp);
+    EXPECT_THAT(watched.output, StartsWith("lidar,sequence"));
+    EXPECT_EQ(watched.log, "ended with 1\n");
+}
+
+TEST(CommandLine, WatchTakesAQueryWithoutAPath) {
+    GatewayProcess gateway({"--lidar", "virtual:a1m8"});
+    const auto watched =
+        call({"watch", "ws://" + gateway.http + "?compression=none", "--csv", "--sweeps", "1"});
+    EXPECT_EQ(watched.exit_code, 0) << watched.log;
 }
 
 TEST(CommandLine, WatchEndsWhenTold) {
