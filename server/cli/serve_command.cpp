@@ -2,10 +2,10 @@
 // to stop.
 #include "driver/device/probe.hpp"
 #include "server/cli/command.hpp"
+#include "server/cli/descriptors.hpp"
 #include "server/cli/stop_signals.hpp"
 #include "server/gateway/gateway.hpp"
 #include "server/log/log.hpp"
-#include "server/net/descriptors.hpp"
 #include "server/net/endpoint.hpp"
 
 #include <CLI/App.hpp>
@@ -85,7 +85,7 @@ Result<gateway::GatewayOptions, Problem> to_options(const ServeArguments& argume
     options.threads = arguments.threads;
     options.device.scan_at_once = !arguments.idle;
     options.device.mode = arguments.mode;
-    options.max_connections = net::most_connections(net::raise_descriptor_limit());
+    options.max_connections = most_connections(raise_descriptor_limit());
     return options;
 }
 

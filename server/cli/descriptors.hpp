@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace sweepcast::net {
+namespace sweepcast::cli {
 
 /// Raises this process's limit on open descriptors as far as it may be raised without privileges.
 /// Returns the limit that holds then.
@@ -20,4 +20,4 @@ std::size_t raise_descriptor_limit();
     return std::clamp<std::size_t>(left, 1, 10'000);
 }
 
-}  // namespace sweepcast::net
+}  // namespace sweepcast::cli

@@ -1,12 +1,12 @@
 // The limit on descriptors, and the connections it leaves room for.
-#include "server/net/descriptors.hpp"
+#include "server/cli/descriptors.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <sys/resource.h>
 
-namespace sweepcast::net {
+namespace sweepcast::cli {
 namespace {
 
 TEST(MostConnections, AreHalfOfWhatIsLeftForEachListener) {
@@ -40,4 +40,4 @@ TEST(RaiseDescriptorLimit, GoesToTheHardLimit) {
 }
 
 }  // namespace
-}  // namespace sweepcast::net
+}  // namespace sweepcast::cli

@@ -1,8 +1,8 @@
-#include "server/net/descriptors.hpp"
+#include "server/cli/descriptors.hpp"
 
 #include <sys/resource.h>
 
-namespace sweepcast::net {
+namespace sweepcast::cli {
 
 std::size_t raise_descriptor_limit() {
     constexpr std::size_t customary = 1024;  // should the system not say
@@ -15,4 +15,4 @@ std::size_t raise_descriptor_limit() {
     return setrlimit(RLIMIT_NOFILE, &limit) == 0 ? limit.rlim_cur : before;
 }
 
-}  // namespace sweepcast::net
+}  // namespace sweepcast::cli
