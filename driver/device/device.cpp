@@ -38,7 +38,7 @@ constexpr std::uint16_t usual_pwm = 660;
 /// Closes a borrowed pointer's life with the scope that owns the object.
 class Lend {
 public:
-    Lend(link::Link*& slot, link::Link& link) : slot_(slot) { slot_ = &link; }
+    Lend(link::Link*& slot, link::Link& link) : slot_(slot) { slot = &link; }
     ~Lend() { slot_ = nullptr; }
     Lend(const Lend&) = delete;
     Lend& operator=(const Lend&) = delete;

@@ -62,15 +62,12 @@ Pty::Pty(asio::posix::stream_descriptor descriptor, std::string port)
     : descriptor_(std::move(descriptor))
     , port_(std::move(port)) {}
 
-Result<Pty, Problem> Pty::open(asio::any_io_executor executor) {
+Result<Pty, Problem> Pty::open(const asio::any_io_executor& executor) {
     const int master = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     if (master < 0) {
         return unavailable("posix_openpt", errno);
     }
-    asio::posix::stream_descriptor descriptor(
-        std::move(executor),
-        master
-    );  // closes it from here on
+    asio::posix::stream_descriptor descriptor(executor, master);  // closes it from here on
     if (::grantpt(master) != 0 || ::unlockpt(master) != 0) {
         return unavailable("unlockpt", errno);
     }

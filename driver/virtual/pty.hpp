@@ -20,7 +20,7 @@ class Pty {
 public:
     /// Opens a new pair. The host's end is raw (no echo, every byte as it is) and open to this user
     /// only. Errors: errc::port_unavailable.
-    static Result<Pty, Problem> open(boost::asio::any_io_executor executor);
+    static Result<Pty, Problem> open(const boost::asio::any_io_executor& executor);
 
     /// The path of the host's end, e.g. /dev/pts/5.
     [[nodiscard]] const std::string& port() const { return port_; }

@@ -67,9 +67,9 @@ private:
     boost::asio::awaitable<void> read_host();
     boost::asio::awaitable<void> keep_pace();
     void note_host(bool present);
-    void live_until(Moment now);
+    void live_until(Moment moment);
     void deliver(const Transmitted& transmitted);
-    void report_losses(Moment now);
+    void report_losses(Moment moment);
     void log_event(const Event& event);
 
     std::shared_ptr<spdlog::logger> logger_;

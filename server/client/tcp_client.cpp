@@ -58,7 +58,7 @@ private:
 
     tcp::socket socket_;
     frame::DelimitedReader reader_{longest_server_message};
-    std::array<std::uint8_t, 16 * 1024> chunk_{};
+    std::array<std::uint8_t, 16UL * 1024> chunk_{};
 };
 
 }  // namespace

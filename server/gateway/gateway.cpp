@@ -116,7 +116,7 @@ Gateway::Gateway(GatewayOptions options, const MakeLogger& make_logger)
     }
     hub_ = std::make_unique<hub::Hub>(executors);
     for (std::size_t i = 0; i < workers_.size(); ++i) {
-        apis_.push_back(api::Api(hub_->local(i), *this));
+        apis_.emplace_back(hub_->local(i), static_cast<api::LidarControl&>(*this));
     }
 }
 

@@ -32,13 +32,13 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr std::uint32_t header_limit = 16 * 1024;
-constexpr std::uint64_t body_limit = 64 * 1024;
+constexpr std::uint32_t header_limit = 16U * 1024;
+constexpr std::uint64_t body_limit = 64ULL * 1024;
 constexpr auto first_request_limit = 30s;
 constexpr auto next_request_limit = 60s;  // the wait for it included
 constexpr auto response_limit = 30s;
 constexpr auto linger_limit = 1s;
-constexpr std::size_t linger_bytes = 256 * 1024;
+constexpr std::size_t linger_bytes = 256UL * 1024;
 
 constexpr const char* stream_path = "/api/v1/stream";
 
@@ -167,7 +167,7 @@ private:
         error_code ignored;  // the client may have gone first
         stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
         stream_.expires_after(linger_limit);
-        std::array<std::uint8_t, 16 * 1024> unwanted{};
+        std::array<std::uint8_t, 16UL * 1024> unwanted{};
         const auto space = asio::buffer(unwanted);
         for (std::size_t discarded = 0; discarded < linger_bytes;) {
             const auto [ended, size] =

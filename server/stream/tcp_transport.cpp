@@ -60,7 +60,7 @@ public:
             if (*message) {
                 co_return std::string((*message)->begin(), (*message)->end());
             }
-            std::array<std::uint8_t, 1024> chunk;
+            std::array<std::uint8_t, 1024> chunk{};
             const auto [failed, got] = co_await socket_.async_read_some(
                 asio::buffer(chunk),
                 asio::as_tuple(asio::use_awaitable)
@@ -83,7 +83,7 @@ public:
 
 private:
     asio::awaitable<void> drain() {
-        std::array<std::uint8_t, 1024> discarded;
+        std::array<std::uint8_t, 1024> discarded{};
         for (error_code ended; !ended;) {
             co_await socket_.async_read_some(
                 asio::buffer(discarded),
