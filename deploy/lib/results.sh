@@ -15,3 +15,12 @@ count_results() {
     skipped=$((skipped + chosen))
     failed=$((failed + all - ok - chosen))
 }
+
+# show_failures LOG: what the tests that failed said, out of ctest's log, and their names.
+show_failures() {
+    sed -E 's/ \.{4,}\*\*\*/ ***/' "$1" | awk '
+        /^ *Start +[0-9]+: / || /^ *[0-9]+\/[0-9]+ Test +#/ { shown = /\*\*\*(Failed|Timeout|Exception|Not Run *[0-9])/ }
+        /^[0-9]+% tests passed/ || /^Errors while/ { shown = 0 }
+        /^The following tests FAILED/ || /^No tests were found/ { shown = 1 }
+        shown { print "    " $0 }'
+}

@@ -18,6 +18,37 @@ DISABLED = '<testcase name="f" classname="f" time="0" status="disabled">\n\t\t<s
 # A test whose output looks like results: ctest escapes it.
 SAYS_IT_FAILED = PASSED.replace("<system-out>", '<system-out>&lt;testcase name="x" status="fail"&gt;\nstatus="disabled"\n')
 
+CTEST_LOG = """Test project build/dev
+      Start  1: Good.Test
+      Start  2: Bad.Test
+ 1/3 Test  #1: Good.Test ..............   Passed    0.01 sec
+ 2/3 Test  #2: Bad.Test ...............***Failed    0.02 sec
+bad_test.cpp:3: Failure
+Expected: 1
+
+      Start  3: Slow.Test
+ 3/3 Test  #3: Slow.Test ..............***Timeout  10.00 sec
+
+33% tests passed, 2 tests failed out of 3
+
+Total Test time (real) =  10.03 sec
+
+The following tests FAILED:
+\t  2 - Bad.Test (Failed)
+\t  3 - Slow.Test (Timeout)
+Errors while running CTest
+"""
+SHOWN = """     2/3 Test  #2: Bad.Test ***Failed    0.02 sec
+    bad_test.cpp:3: Failure
+    Expected: 1
+    
+     3/3 Test  #3: Slow.Test ***Timeout  10.00 sec
+    
+    The following tests FAILED:
+    \t  2 - Bad.Test (Failed)
+    \t  3 - Slow.Test (Timeout)
+"""
+
 
 class ResultsTest(unittest.TestCase):
     def totals(self, *runs):
@@ -44,6 +75,14 @@ class ResultsTest(unittest.TestCase):
 
     def test_what_a_test_prints_does_not_count(self):
         self.assertEqual(self.totals([SAYS_IT_FAILED]), (1, 0, 0))
+
+    def test_only_what_failed_is_shown(self):
+        with tempfile.TemporaryDirectory() as folder:
+            log = Path(folder) / "log"
+            log.write_text(CTEST_LOG, encoding="utf-8")
+            command = ["bash", "-c", f'source "{RESULTS}"; show_failures "{log}"']
+            done = subprocess.run(command, capture_output=True, text=True, check=True)
+        self.assertEqual(done.stdout, SHOWN)
 
 
 if __name__ == "__main__":
