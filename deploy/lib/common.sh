@@ -39,12 +39,17 @@ check_system() {
     fi
 }
 
-# missing_packages PACKAGE...: those that are not installed, one a line.
+# missing_packages PACKAGE...: sets `missing` to those that are not installed.
 missing_packages() {
-    local installed
+    local package installed
     # dpkg-query fails for packages it has never heard of; what it prints is right all the same.
-    installed=$(dpkg-query -W -f='${Package} ${db:Status-Status}\n' "$@" 2>/dev/null | sed -n 's/ installed$//p' || true)
-    printf '%s\n' "$@" | grep -vxF -f <(printf '%s\n' "$installed") || true
+    installed=$(dpkg-query -W -f='${Package} ${db:Status-Status}\n' "$@" 2>/dev/null || true)
+    missing=()
+    for package in "$@"; do
+        if ! grep -qxF "$package installed" <<<"$installed"; then
+            missing+=("$package")
+        fi
+    done
 }
 
 # as_root COMMAND...: runs it as root, directly or through sudo.
@@ -63,7 +68,7 @@ install_packages() {
         return
     fi
     local missing
-    mapfile -t missing < <(missing_packages "$@")
+    missing_packages "$@"
     if ((${#missing[@]} == 0)); then
         return
     fi
