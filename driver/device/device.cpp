@@ -4,6 +4,7 @@
 #include "driver/device/error.hpp"
 #include "driver/link/error.hpp"
 #include "driver/protocol/decode.hpp"
+#include "driver/protocol/model.hpp"
 #include "driver/protocol/sweep_assembler.hpp"
 
 #include <boost/asio/steady_timer.hpp>

@@ -5,6 +5,7 @@
 #include "driver/device/error.hpp"
 #include "driver/link/port_list.hpp"
 #include "driver/link/serial_link.hpp"
+#include "driver/protocol/model.hpp"
 
 #include <fmt/format.h>
 

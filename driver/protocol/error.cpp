@@ -20,6 +20,12 @@ public:
             return "the scanner answers with a measurement stream that is not supported";
         case errc::malformed_reply:
             return "a reply holds a value that its field cannot have";
+        case errc::conf_type_mismatch:
+            return "the scanner answered another configuration question than it was asked";
+        case errc::conf_not_supported:
+            return "the scanner does not know this configuration value";
+        case errc::conf_refused:
+            return "the scanner refused this configuration value";
         }
         return "unknown protocol error " + std::to_string(value);
     }

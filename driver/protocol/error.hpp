@@ -14,6 +14,9 @@ enum class errc {
     length_out_of_range,      ///< a length that this answer cannot have
     unsupported_answer_type,  ///< the scanner announced a stream that is not decoded here
     malformed_reply,          ///< a value in a reply that its field cannot hold
+    conf_type_mismatch,       ///< an answer to another configuration question than was asked
+    conf_not_supported,       ///< the scanner does not know this configuration value
+    conf_refused,             ///< the scanner would not take this configuration value
 };
 
 /// The category "sweepcast.protocol".

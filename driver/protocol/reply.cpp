@@ -71,21 +71,15 @@ std::array<std::uint8_t, sample_rate_size> encode_sample_rate(const SampleRate& 
     return packet;
 }
 
-std::string model_name(std::uint8_t model) {
-    struct Family {
-        int first;  // the family's first value of the high nibble
-        int below;  // what to subtract from the high nibble for the generation
-        char letter;
-    };
-    constexpr std::array<Family, 5> families{
-        {{12, 11, 'M'}, {9, 8, 'T'}, {6, 5, 'S'}, {4, 3, 'C'}, {0, 0, 'A'}}};
-    const int series = model >> 4;
-    const auto family =
-        *std::find_if(families.begin(), families.end(), [series](const Family& each) {
-            return series >= each.first;
-        });
-    return family.letter + std::to_string(series - family.below) + 'M' +
-           std::to_string(model & 0x0F);
+Result<AccessoryBoard> decode_acc_board_flag(std::span<const std::uint8_t> packet) {
+    if (packet.size() != acc_board_flag_size) {
+        return make_error_code(errc::length_out_of_range);
+    }
+    return AccessoryBoard{.controls_motor = (packet[0] & 1U) != 0};
+}
+
+std::array<std::uint8_t, acc_board_flag_size> encode_acc_board_flag(const AccessoryBoard& board) {
+    return {static_cast<std::uint8_t>(board.controls_motor ? 1 : 0), 0, 0, 0};
 }
 
 std::string serial_text(const std::array<std::uint8_t, 16>& serial) {

@@ -1,5 +1,5 @@
-// Replies of one packet: device info, health, sample rate. Decoders for the driver, encoders for
-// the virtual lidar.
+// Replies of one packet: device info, health, sample rate, accessory board. Decoders for the
+// driver, encoders for the virtual lidar.
 #pragma once
 
 #include "driver/protocol/result.hpp"
@@ -15,7 +15,7 @@ namespace sweepcast::protocol {
 
 /// Who a scanner says it is.
 struct DeviceInfo {
-    std::uint8_t model{};  ///< see model_name()
+    std::uint8_t model{};  ///< see model.hpp
     std::uint8_t firmware_major{};
     std::uint8_t firmware_minor{};
     std::uint8_t hardware{};
@@ -43,9 +43,16 @@ struct SampleRate {
     bool operator==(const SampleRate&) const = default;
 };
 
+/// What a scanner says of the board that its motor may hang on.
+struct AccessoryBoard {
+    bool controls_motor{};
+    bool operator==(const AccessoryBoard&) const = default;
+};
+
 inline constexpr std::size_t device_info_size = 20;
 inline constexpr std::size_t health_size = 3;
 inline constexpr std::size_t sample_rate_size = 4;
+inline constexpr std::size_t acc_board_flag_size = 4;
 
 /// Reads the packet that answers GET_INFO. Errors: length_out_of_range. Source: protocol.md 2.
 [[nodiscard]] Result<DeviceInfo> decode_device_info(std::span<const std::uint8_t> packet);
@@ -56,6 +63,10 @@ inline constexpr std::size_t sample_rate_size = 4;
 /// it. Errors: length_out_of_range. Source: protocol.md 2, 13.14.
 [[nodiscard]] Result<SampleRate> decode_sample_rate(std::span<const std::uint8_t> packet);
 
+/// Reads the packet that answers GET_ACC_BOARD_FLAG: whether a board can control the motor.
+/// Errors: length_out_of_range. Source: protocol.md 2.
+[[nodiscard]] Result<AccessoryBoard> decode_acc_board_flag(std::span<const std::uint8_t> packet);
+
 /// The inverse of decode_device_info().
 [[nodiscard]] std::array<std::uint8_t, device_info_size> encode_device_info(const DeviceInfo& info);
 /// The inverse of decode_health().
@@ -63,8 +74,10 @@ inline constexpr std::size_t sample_rate_size = 4;
 /// The inverse of decode_sample_rate(). Durations are clamped to what fits, 0..65535 us.
 [[nodiscard]] std::array<std::uint8_t, sample_rate_size> encode_sample_rate(const SampleRate& rate);
 
-/// The model's name as the vendor forms it, e.g. "A1M8" for 0x18. Source: protocol.md 6.
-[[nodiscard]] std::string model_name(std::uint8_t model);
+/// The inverse of decode_acc_board_flag().
+[[nodiscard]] std::array<std::uint8_t, acc_board_flag_size> encode_acc_board_flag(
+    const AccessoryBoard& board
+);
 
 /// The serial number as printed on the scanner: 32 upper-case hex digits in wire order. Source:
 /// protocol.md 2.

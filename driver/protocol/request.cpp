@@ -36,4 +36,20 @@ Request set_motor_pwm_request(std::uint16_t pwm) {
     return {Command::set_motor_pwm, {payload.begin(), payload.end()}};
 }
 
+Request motor_rpm_request(std::uint16_t rpm) {
+    std::array<std::uint8_t, 2> payload{};
+    store_le16(payload, rpm);
+    return {Command::motor_rpm, {payload.begin(), payload.end()}};
+}
+
+Request acc_board_flag_request() {
+    return {Command::get_acc_board_flag, {0, 0, 0, 0}};
+}
+
+Request confirm_baud_request(std::uint32_t baud) {
+    std::array<std::uint8_t, 8> payload{0x5F, 0x5F};
+    store_le32(std::span(payload).subspan<2, 4>(), baud);
+    return {Command::confirm_baud, {payload.begin(), payload.end()}};
+}
+
 }  // namespace sweepcast::protocol

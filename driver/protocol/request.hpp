@@ -25,6 +25,7 @@ enum class Command : std::uint8_t {
     express_scan = 0x82,
     get_lidar_conf = 0x84,
     set_lidar_conf = 0x85,
+    confirm_baud = 0x90,
     motor_rpm = 0xA8,
     set_motor_pwm = 0xF0,
     get_acc_board_flag = 0xFF,
@@ -55,5 +56,19 @@ struct Request {
 /// Sets the duty of a motor behind an accessory board, 0..1023; 660 is usual, 0 stops it. Source:
 /// protocol.md 5.
 [[nodiscard]] Request set_motor_pwm_request(std::uint16_t pwm);
+
+/// Sets the speed of a motor that regulates itself, in turns a minute; 0: idle. Source:
+/// protocol.md 2, 5.
+[[nodiscard]] Request motor_rpm_request(std::uint16_t rpm);
+
+/// Asks whether an accessory board controls the motor. Source: protocol.md 2.
+[[nodiscard]] Request acc_board_flag_request();
+
+/// Makes a negotiated line speed last. Source: protocol.md 2, 4.7.
+[[nodiscard]] Request confirm_baud_request(std::uint32_t baud);
+
+/// The byte that a scanner measures the line speed by: sixteen of them, over and over, until it
+/// answers with the speed as a bare 32-bit number. Source: protocol.md 4.7.
+inline constexpr std::uint8_t autobaud_byte = 0x41;
 
 }  // namespace sweepcast::protocol

@@ -1,5 +1,6 @@
 // `sweepcast probe`: says what is at a port.
 #include "driver/device/probe.hpp"
+#include "driver/protocol/model.hpp"
 #include "driver/protocol/reply.hpp"
 #include "server/cli/command.hpp"
 

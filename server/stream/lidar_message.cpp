@@ -1,5 +1,6 @@
 #include "server/stream/lidar_message.hpp"
 
+#include "driver/protocol/model.hpp"
 #include "driver/protocol/reply.hpp"
 
 #include <fmt/format.h>

@@ -62,43 +62,24 @@ TEST(SampleRateTest, IsWrittenClampedToItsFields) {
     );
 }
 
+TEST(AccBoardFlagTest, IsItsLowestBit) {
+    EXPECT_TRUE(decode_acc_board_flag(Bytes{1, 0, 0, 0}).value().controls_motor);
+    EXPECT_FALSE(decode_acc_board_flag(Bytes{0xFE, 0xFF, 0xFF, 0xFF}).value().controls_motor);
+    for (const AccessoryBoard board : {AccessoryBoard{true}, AccessoryBoard{false}}) {
+        EXPECT_EQ(decode_acc_board_flag(encode_acc_board_flag(board)).value(), board);
+    }
+}
+
 TEST(ReplyTest, IsRefusedWithAnyOtherLength) {
     for (std::size_t size = 0; size < 32; ++size) {
         const Bytes packet(size);
         EXPECT_EQ(decode_device_info(packet).has_value(), size == 20) << size;
         EXPECT_EQ(decode_health(packet).has_value(), size == 3) << size;
         EXPECT_EQ(decode_sample_rate(packet).has_value(), size == 4) << size;
+        EXPECT_EQ(decode_acc_board_flag(packet).has_value(), size == 4) << size;
     }
     EXPECT_EQ(decode_health(Bytes{}).error(), errc::length_out_of_range);
 }
-
-class ModelNameTest : public testing::TestWithParam<std::pair<int, const char*>> {};
-
-TEST_P(ModelNameTest, IsFormedAsTheVendorDoes) {
-    const auto [model, name] = GetParam();
-    EXPECT_EQ(model_name(static_cast<std::uint8_t>(model)), name);
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Known,
-    ModelNameTest,
-    testing::Values(
-        std::pair{0x18, "A1M8"},
-        std::pair{0x27, "A2M7"},
-        std::pair{0x2C, "A2M12"},
-        std::pair{0x31, "A3M1"},
-        std::pair{0x41, "C1M1"},
-        std::pair{0x51, "C2M1"},
-        std::pair{0x61, "S1M1"},
-        std::pair{0x71, "S2M1"},
-        std::pair{0x81, "S3M1"},
-        std::pair{0x91, "T1M1"},
-        std::pair{0xB2, "T3M2"},
-        std::pair{0xC0, "M1M0"},
-        std::pair{0xFF, "M4M15"},
-        std::pair{0x00, "A0M0"}
-    )
-);
 
 TEST(SerialTextTest, IsHexInWireOrder) {
     const auto info = decode_device_info(info_packet).value();
@@ -112,11 +93,14 @@ TEST(ProtocolErrorTest, EachSaysSomethingOfItsOwn) {
          {errc::checksum_mismatch,
           errc::length_out_of_range,
           errc::unsupported_answer_type,
-          errc::malformed_reply}) {
+          errc::malformed_reply,
+          errc::conf_type_mismatch,
+          errc::conf_not_supported,
+          errc::conf_refused}) {
         messages.insert(make_error_code(code).message());
     }
     messages.insert(boost::system::error_code(99, protocol_category()).message());
-    EXPECT_EQ(messages.size(), 5U);
+    EXPECT_EQ(messages.size(), 8U);
     EXPECT_EQ(
         make_error_code(errc::malformed_reply).category().name(),
         std::string("sweepcast.protocol")

@@ -56,16 +56,18 @@ INSTANTIATE_TEST_SUITE_P(
         RequestCase{"get_info", {Command::get_info}, {0xA5, 0x50}},
         RequestCase{"get_health", {Command::get_health}, {0xA5, 0x52}},
         RequestCase{"get_sample_rate", {Command::get_sample_rate}, {0xA5, 0x59}},
+        RequestCase{"rpm_0", motor_rpm_request(0), {0xA5, 0xA8, 0x02, 0, 0, 0x0F}},
+        RequestCase{
+            "confirm_baud",
+            confirm_baud_request(256000),
+            {0xA5, 0x90, 0x08, 0x5F, 0x5F, 0x00, 0xE8, 0x03, 0x00, 0, 0, 0xD6}},
         RequestCase{
             "get_acc_board_flag",
             {Command::get_acc_board_flag, {0, 0, 0, 0}},
             {0xA5, 0xFF, 0x04, 0, 0, 0, 0, 0x5E}},
         RequestCase{"pwm_660", set_motor_pwm_request(660), {0xA5, 0xF0, 0x02, 0x94, 0x02, 0xC1}},
         RequestCase{"pwm_0", set_motor_pwm_request(0), {0xA5, 0xF0, 0x02, 0, 0, 0x57}},
-        RequestCase{
-            "rpm_600",
-            {Command::motor_rpm, {0x58, 0x02}},
-            {0xA5, 0xA8, 0x02, 0x58, 0x02, 0x55}},
+        RequestCase{"rpm_600", motor_rpm_request(600), {0xA5, 0xA8, 0x02, 0x58, 0x02, 0x55}},
         RequestCase{
             "express_legacy",
             express_scan_request(0),
