@@ -40,6 +40,11 @@ struct StartWord {
     }
 };
 
+/// Writes the start word.
+constexpr void store_start_word(std::span<std::uint8_t, 2> word, bool restart, AngleQ6 start) {
+    store_le16(word, static_cast<std::uint16_t>((start.raw & 0x7FFFU) | (restart ? 0x8000U : 0U)));
+}
+
 /// One turn in the fixed-point units of capsule arithmetic.
 inline constexpr std::int32_t turn_q6 = 360 << 6;
 inline constexpr std::int32_t turn_q8 = 360 << 8;

@@ -23,11 +23,7 @@ std::array<std::uint8_t, packet_size(AnswerType::express)> encode_express(
 ) {
     std::array<std::uint8_t, packet_size(AnswerType::express)> packet{};
     const std::span bytes{packet};
-    const unsigned restart_bit = capsule.restart ? 0x8000 : 0;
-    store_le16(
-        bytes.subspan<2, 2>(),
-        static_cast<std::uint16_t>((capsule.start_angle.raw & 0x7FFFU) | restart_bit)
-    );
+    store_start_word(bytes.subspan<2, 2>(), capsule.restart, capsule.start_angle);
     for (std::size_t i = 0; i < capsule.samples.size(); i += 2) {
         const auto& first = capsule.samples[i];
         const auto& second = capsule.samples[i + 1];
