@@ -283,7 +283,10 @@ asio::awaitable<Result<void>> Device::scan(Conversation& talk) {
 /// Reads, decodes and gives out sweeps until something ends it; never returns success.
 asio::awaitable<Result<void>>
 Device::deliver_sweeps(Conversation& talk, protocol::AnswerType type, const ScanMode& mode) {
-    auto decoder = protocol::Decoder::create(type, {mode.sample_duration, link_->baud(), false});
+    auto decoder = protocol::Decoder::create(
+        type,
+        {std::chrono::round<std::chrono::microseconds>(mode.sample_duration), link_->baud(), false}
+    );
     if (!decoder) {
         co_return decoder.error();
     }
@@ -394,7 +397,7 @@ void Device::publish(protocol::Sweep sweep, protocol::AnswerType type, const Sca
     captured.sweep = std::move(sweep);
     captured.mode = mode.name;
     captured.answer_type = type;
-    captured.sample_duration = mode.sample_duration;
+    captured.sample_duration = std::chrono::round<std::chrono::microseconds>(mode.sample_duration);
     captured.monotonic_to_unix = unix_now - monotonic_now;
     captured.sequence = ++sequence_;
     observer_.on_sweep(std::move(captured));

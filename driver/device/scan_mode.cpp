@@ -20,10 +20,17 @@ bool equal_but_for_case(std::string_view a, std::string_view b) {
 
 std::vector<ScanMode>
 legacy_modes(const protocol::DeviceInfo& info, const protocol::SampleRate& rate) {
-    std::vector<ScanMode> modes{{"Standard", protocol::AnswerType::normal, rate.standard}};
+    std::vector<ScanMode> modes{
+        {.name = "Standard",
+         .answer_type = protocol::AnswerType::normal,
+         .sample_duration = rate.standard}};
     const unsigned firmware = info.firmware_major * 256U + info.firmware_minor;
     if (firmware >= express_since) {
-        modes.push_back({"Express", protocol::AnswerType::express, rate.express});
+        modes.push_back(
+            {.name = "Express",
+             .answer_type = protocol::AnswerType::express,
+             .sample_duration = rate.express}
+        );
     }
     return modes;
 }

@@ -6,6 +6,8 @@
 #include "driver/protocol/request.hpp"
 
 #include <chrono>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,10 +17,17 @@ namespace sweepcast::device {
 struct ScanMode {
     std::string name;
     protocol::AnswerType answer_type{};
-    std::chrono::microseconds sample_duration{};
+    /// From one sample to the next; 0 if the lidar does not say.
+    std::chrono::nanoseconds sample_duration{};
+    /// What the lidar calls it by; unset for a lidar that lists no modes.
+    std::optional<std::uint16_t> id{};
+    /// Samples beyond it are no echoes; 0 if not known.
+    double max_distance_mm{};
+    /// The one that the lidar recommends.
+    bool typical{};
 
     [[nodiscard]] double samples_per_second() const {
-        return sample_duration.count() > 0 ? 1e6 / static_cast<double>(sample_duration.count())
+        return sample_duration.count() > 0 ? 1e9 / static_cast<double>(sample_duration.count())
                                            : 0.0;
     }
 };

@@ -23,8 +23,30 @@ inline hub::LidarSnapshotPtr known_lidar() {
         .serial = {0xA0, 0xE1, 0xC2, 0xD3}};
     lidar->state.health = protocol::Health{protocol::HealthStatus::warning, 7};
     lidar->state.modes = {
-        {"Express", protocol::AnswerType::express, std::chrono::microseconds(250)}};
+        {.name = "Express",
+         .answer_type = protocol::AnswerType::express,
+         .sample_duration = std::chrono::microseconds(250),
+         .id = 0,
+         .max_distance_mm = 12000.0,
+         .typical = true}};
     lidar->state.mode = "Express";
+    lidar->state.alias = "A1M8-R6";
+    lidar->state.rotation = {
+        .control = device::SpeedControl::duty,
+        .wanted_hz = 7.0,
+        .measured_hz = 6.97,
+        .settled = true,
+        .usual_hz = 10.0,
+        .min_hz = 5.0,
+        .max_hz = 15.0,
+        .warning = "slow"};
+    lidar->state.line = {
+        .baud = 115200,
+        .bytes = 1000,
+        .samples = 320,
+        .checksum_errors = 3,
+        .skipped_bytes = 2,
+        .lost_packets = 1};
     return lidar;
 }
 

@@ -40,7 +40,7 @@ TEST_F(MessagesTest, HelloTellsVersionAndLidars) {
 TEST_F(MessagesTest, StateTellsEverythingKnownOfALidar) {
     const auto lidar = parse(state_message(*known_lidar())).lidar();
     EXPECT_EQ(lidar.state(), v1::Lidar::SCANNING);
-    EXPECT_EQ(lidar.device().model(), "A1M8");
+    EXPECT_EQ(lidar.device().model(), "A1M8-R6");
     EXPECT_EQ(lidar.device().firmware(), "1.29");
     EXPECT_EQ(lidar.device().serial_number(), "A0E1C2D3000000000000000000000000");
     EXPECT_EQ(lidar.health().status(), v1::Health::WARNING);
@@ -48,6 +48,33 @@ TEST_F(MessagesTest, StateTellsEverythingKnownOfALidar) {
     ASSERT_EQ(lidar.modes_size(), 1);
     EXPECT_EQ(lidar.modes(0).samples_per_second(), 4000);
     EXPECT_EQ(lidar.modes(0).answer_type(), 0x82U);
+    EXPECT_EQ(lidar.modes(0).max_distance_m(), 12.0);
+    EXPECT_TRUE(lidar.modes(0).has_id());
+    EXPECT_TRUE(lidar.modes(0).typical());
+}
+
+TEST_F(MessagesTest, StateTellsHowFastALidarTurnsAndHowGoodItsLineIs) {
+    const auto lidar = parse(state_message(*known_lidar())).lidar();
+    EXPECT_EQ(lidar.rotation().control(), v1::Rotation::DUTY);
+    EXPECT_EQ(lidar.rotation().wanted_hz(), 7.0);
+    EXPECT_EQ(lidar.rotation().measured_hz(), 6.97);
+    EXPECT_TRUE(lidar.rotation().settled());
+    EXPECT_EQ(lidar.rotation().usual_hz(), 10.0);
+    EXPECT_EQ(lidar.rotation().min_hz(), 5.0);
+    EXPECT_EQ(lidar.rotation().max_hz(), 15.0);
+    EXPECT_EQ(lidar.rotation().warning(), "slow");
+    EXPECT_EQ(lidar.line().baud(), 115200U);
+    EXPECT_EQ(lidar.line().bytes(), 1000U);
+    EXPECT_EQ(lidar.line().samples(), 320U);
+    EXPECT_EQ(lidar.line().checksum_errors(), 3U);
+    EXPECT_EQ(lidar.line().skipped_bytes(), 2U);
+    EXPECT_EQ(lidar.line().lost_packets(), 1U);
+}
+
+TEST_F(MessagesTest, ALidarWithoutANameOfItsOwnGoesByItsModel) {
+    auto lidar = *known_lidar();
+    lidar.state.alias.clear();
+    EXPECT_EQ(parse(state_message(lidar)).lidar().device().model(), "A1M8");
 }
 
 TEST_F(MessagesTest, ASubscribeBecomesAWish) {
