@@ -23,6 +23,7 @@ enum class Command : std::uint8_t {
     get_health = 0x52,
     get_sample_rate = 0x59,
     express_scan = 0x82,
+    hq_scan = 0x83,
     get_lidar_conf = 0x84,
     set_lidar_conf = 0x85,
     confirm_baud = 0x90,

@@ -1,11 +1,14 @@
 #include "driver/virtual/answers.hpp"
 
 #include "driver/protocol/descriptor_hunter.hpp"
+#include "driver/protocol/model.hpp"
 #include "driver/protocol/wire.hpp"
+#include "driver/virtual/conf_values.hpp"
 
 #include <algorithm>
 #include <array>
-#include <string_view>
+#include <chrono>
+#include <span>
 
 namespace sweepcast::virtual_lidar {
 
@@ -13,30 +16,18 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 using protocol::Command;
+using protocol::ConfType;
 using protocol::ReplyType;
 
-Bytes le16(std::uint16_t value) {
-    std::array<std::uint8_t, 2> bytes{};
-    protocol::store_le16(bytes, value);
-    return {bytes.begin(), bytes.end()};
-}
-
-Bytes le32(std::uint32_t value) {
-    std::array<std::uint8_t, 4> bytes{};
-    protocol::store_le32(bytes, value);
-    return {bytes.begin(), bytes.end()};
-}
+// Results of SET_LIDAR_CONF (protocol.md 9).
+constexpr std::uint32_t result_ok = 0;
+constexpr std::uint32_t result_not_supported = 0x8000'8004;
+constexpr std::uint32_t result_bad_format = 0x8000'8005;
 
 Bytes joined(std::span<const std::uint8_t> first, std::span<const std::uint8_t> second) {
     Bytes both(first.size() + second.size());
     std::copy(second.begin(), second.end(), std::copy(first.begin(), first.end(), both.begin()));
     return both;
-}
-
-Bytes zero_terminated(std::string_view text) {
-    Bytes out(text.begin(), text.end());
-    out.push_back(0);
-    return out;
 }
 
 Bytes packet(ReplyType type, std::span<const std::uint8_t> payload) {
@@ -49,109 +40,89 @@ Bytes packet(ReplyType type, std::span<const std::uint8_t> payload) {
 }
 
 // SCAN is the first mode; "express" here is the first one that is streamed in 0x82 capsules.
-protocol::SampleRate sample_rate(const Persona& persona) {
-    const auto express =
-        std::find_if(persona.modes.begin(), persona.modes.end(), [](const ScanMode& mode) {
-            return mode.answer == protocol::AnswerType::express;
-        });
-    const auto& fast = express != persona.modes.end() ? *express : persona.modes.front();
+protocol::SampleRate sample_rate(const Persona& persona, const Unit& unit) {
+    if (unit.says_no_sample_time) {
+        return {};
+    }
+    const auto& standard = persona.modes.front();
+    const auto* const express = find_mode(persona, protocol::AnswerType::express);
     using std::chrono::duration_cast;
     using std::chrono::microseconds;
     return {
-        .standard = duration_cast<microseconds>(persona.modes.front().sample_duration()),
-        .express = duration_cast<microseconds>(fast.sample_duration()),
+        .standard = duration_cast<microseconds>(standard.sample_duration()),
+        .express = duration_cast<microseconds>((express ? *express : standard).sample_duration()),
     };
 }
 
-std::optional<Bytes> conf_answer(const Persona& persona, std::span<const std::uint8_t> payload) {
+std::optional<Bytes>
+conf_answer(std::span<const std::uint8_t> payload, const Persona& persona, const Unit& unit) {
     if (payload.size() < 4) {
         return std::nullopt;
     }
-    const auto type = protocol::load_le32(payload.first<4>());
-    const auto value = conf_value(persona, type, payload.subspan(4));
-    return packet(ReplyType::lidar_conf, joined(le32(type), value));
+    const auto type = ConfType{protocol::load_le32(payload.first<4>())};
+    const auto value = conf_value(type, payload.subspan(4), persona, unit);
+    return packet(ReplyType::lidar_conf, joined(payload.first<4>(), value));
 }
 
-// Nothing can be set on the scanners played so far.
-std::optional<Bytes> set_conf_answer(std::span<const std::uint8_t> payload) {
-    constexpr std::uint32_t not_supported = 0x8000'8004;  // protocol.md 9, result codes
+std::uint32_t
+set_conf(ConfType type, std::span<const std::uint8_t> value, const Persona& persona, Unit& unit) {
+    if (type != ConfType::static_ip || persona.connection != Connection::ethernet) {
+        return result_not_supported;
+    }
+    const auto address = protocol::decode_static_ip(value);
+    if (!address) {
+        return result_bad_format;
+    }
+    unit.static_ip = *address;
+    return result_ok;
+}
+
+std::optional<Bytes>
+set_conf_answer(std::span<const std::uint8_t> payload, const Persona& persona, Unit& unit) {
     if (payload.size() < 4) {
         return std::nullopt;
     }
-    return packet(ReplyType::set_lidar_conf, joined(payload.first<4>(), le32(not_supported)));
+    const auto type = ConfType{protocol::load_le32(payload.first<4>())};
+    std::array<std::uint8_t, 4> result{};
+    protocol::store_le32(result, set_conf(type, payload.subspan(4), persona, unit));
+    return packet(ReplyType::set_lidar_conf, joined(payload.first<4>(), result));
 }
 
-Bytes mode_value(const ScanMode& mode, std::uint32_t type) {
-    switch (type) {
-    case 0x71:
-        return le32(mode.sample_duration_q8_us);
-    case 0x74:
-        return le32(mode.max_distance_q8_m);
-    case 0x75:
-        return {static_cast<std::uint8_t>(mode.answer)};
-    default:
-        return zero_terminated(mode.name);
+// Whether there is an accessory board, and it can control the motor.
+std::optional<Bytes> board_answer(const Persona& persona) {
+    constexpr std::array<std::uint8_t, 4> by_pwm{1, 0, 0, 0};
+    if (persona.motor.control != protocol::MotorControl::accessory_board) {
+        return std::nullopt;
     }
+    return packet(ReplyType::acc_board_flag, by_pwm);
 }
 
 }  // namespace
 
-std::vector<std::uint8_t>
-conf_value(const Persona& persona, std::uint32_t type, std::span<const std::uint8_t> arguments) {
-    switch (type) {
-    case 0x01:
-        return joined(le16(persona.rotation.desired_rpm), le16(persona.rotation.pwm_reference));
-    case 0x04:
-        return le16(persona.rotation.min_rpm);
-    case 0x05:
-        return le16(persona.rotation.max_rpm);
-    case 0x70:
-        return le16(static_cast<std::uint16_t>(persona.modes.size()));
-    case 0x7C:
-        return le16(persona.typical_mode);
-    case 0x81:  // the alias of the model's name, which none has
-        return zero_terminated("");
-    case 0x71:
-    case 0x74:
-    case 0x75:
-    case 0x7F: {
-        if (arguments.size() < 2) {
-            return {};
-        }
-        const auto id = protocol::load_le16(arguments.first<2>());
-        return id < persona.modes.size() ? mode_value(persona.modes[id], type) : Bytes{};
-    }
-    default:
-        return {};
-    }
-}
-
-std::optional<std::vector<std::uint8_t>> answer_to(
-    const protocol::Request& request,
-    const Persona& persona,
-    const SerialNumber& serial,
-    const protocol::Health& health
-) {
+std::optional<std::vector<std::uint8_t>>
+answer_to(const protocol::Request& request, const Persona& persona, Unit& unit) {
+    const auto info = device_info(persona, unit.serial);
     switch (request.command) {
     case Command::get_info:
-        return packet(
-            ReplyType::device_info,
-            protocol::encode_device_info({
-                .model = persona.model,
-                .firmware_major = persona.firmware_major,
-                .firmware_minor = persona.firmware_minor,
-                .hardware = persona.hardware,
-                .serial = serial,
-            })
-        );
+        return packet(ReplyType::device_info, protocol::encode_device_info(info));
     case Command::get_health:
-        return packet(ReplyType::health, protocol::encode_health(health));
+        return packet(ReplyType::health, protocol::encode_health(unit.health));
     case Command::get_sample_rate:
-        return packet(ReplyType::sample_rate, protocol::encode_sample_rate(sample_rate(persona)));
+        if (!protocol::knows_express(info)) {
+            return std::nullopt;
+        }
+        return packet(
+            ReplyType::sample_rate,
+            protocol::encode_sample_rate(sample_rate(persona, unit))
+        );
     case Command::get_lidar_conf:
-        return conf_answer(persona, request.payload);
+        return protocol::knows_lidar_conf(info) ? conf_answer(request.payload, persona, unit)
+                                                : std::nullopt;
     case Command::set_lidar_conf:
-        return set_conf_answer(request.payload);
+        return protocol::knows_lidar_conf(info) ? set_conf_answer(request.payload, persona, unit)
+                                                : std::nullopt;
+    case Command::get_acc_board_flag:
+        return board_answer(persona);
     default:
         return std::nullopt;
     }

@@ -16,26 +16,33 @@ double seconds_between(Moment from, Moment to) {
 
 Motor::Motor(const MotorTraits& traits, Moment now) : traits_(traits), commanded_(now) {}
 
-bool Motor::switch_to(bool on, Moment now) {
-    if (on == on_) {
+bool Motor::turn_at(double goal_hz, Moment now) {
+    if (goal_hz == goal_hz_) {
         return false;
     }
     const double turns_now = even_turns(now);
+    const bool was_stable = is_stable(now);
     hz_then_ = rotation_hz(now);
     turns_then_ = turns_now;
     commanded_ = now;
-    on_ = on;
+    goal_hz_ = goal_hz;
+    if (!is_on()) {
+        stable_from_.reset();
+    } else if (!was_stable) {
+        const std::chrono::duration<double> ramp(ramp_seconds());
+        stable_from_ = now + std::chrono::ceil<std::chrono::nanoseconds>(ramp);
+    }
     return true;
 }
 
 double Motor::acceleration() const {
-    const auto ramp = std::chrono::duration<double>(on_ ? traits_.spin_up : traits_.coast_down);
-    return (on_ ? traits_.rotation_hz : -traits_.rotation_hz) / ramp.count();
+    const bool faster = goal_hz_ > hz_then_;
+    const std::chrono::duration<double> ramp(faster ? traits_.spin_up : traits_.coast_down);
+    return (faster ? traits_.rotation_hz : -traits_.rotation_hz) / ramp.count();
 }
 
 double Motor::ramp_seconds() const {
-    const double goal_hz = on_ ? traits_.rotation_hz : 0.0;
-    return (goal_hz - hz_then_) / acceleration();
+    return (goal_hz_ - hz_then_) / acceleration();
 }
 
 double Motor::rotation_hz(Moment at) const {
@@ -46,9 +53,8 @@ double Motor::rotation_hz(Moment at) const {
 double Motor::even_turns(Moment at) const {
     const double elapsed = seconds_between(commanded_, at);
     const double ramp = std::min(elapsed, ramp_seconds());
-    const double even_hz = on_ ? traits_.rotation_hz : 0.0;
     const double on_ramp = (hz_then_ + 0.5 * acceleration() * ramp) * ramp;
-    return turns_then_ + on_ramp + even_hz * (elapsed - ramp);
+    return turns_then_ + on_ramp + goal_hz_ * (elapsed - ramp);
 }
 
 double Motor::turns(Moment at) const {
@@ -58,19 +64,6 @@ double Motor::turns(Moment at) const {
     constexpr double ripples_per_turn = 2.0 * std::numbers::pi / 2.7;
     const double even = even_turns(at);
     return even + traits_.ripple / ripples_per_turn * std::sin(ripples_per_turn * even);
-}
-
-std::optional<Moment> Motor::stable_from() const {
-    if (!on_) {
-        return std::nullopt;
-    }
-    const std::chrono::duration<double> ramp(ramp_seconds());
-    return commanded_ + std::chrono::ceil<std::chrono::nanoseconds>(ramp);
-}
-
-bool Motor::is_stable(Moment at) const {
-    const auto from = stable_from();
-    return from && at >= *from;
 }
 
 }  // namespace sweepcast::virtual_lidar

@@ -19,10 +19,11 @@ public:
     /// A motor at rest, pointing to 0 degrees, switched off.
     Motor(const MotorTraits& traits, Moment now);
 
-    /// Switches it on or off at `now`. Returns false if it was so already.
-    bool switch_to(bool on, Moment now);
+    /// Makes it turn `goal_hz` times a second, from `now` on as fast as it gets there; 0 switches
+    /// it off. Returns false if that was its goal already.
+    bool turn_at(double goal_hz, Moment now);
 
-    [[nodiscard]] bool is_on() const { return on_; }
+    [[nodiscard]] bool is_on() const { return goal_hz_ > 0.0; }
 
     /// Turns made by the time `at` since it was made; the part after the point is where the head
     /// points.
@@ -31,11 +32,12 @@ public:
     /// Turns per second at `at`, without the ripple.
     [[nodiscard]] double rotation_hz(Moment at) const;
 
-    /// When its speed is or was settled after the last command; none if it is off.
-    [[nodiscard]] std::optional<Moment> stable_from() const;
+    /// When it is or was up to speed after it was switched on: other speeds asked for while it
+    /// turns do not make it unstable. None if it is off.
+    [[nodiscard]] std::optional<Moment> stable_from() const { return stable_from_; }
 
-    /// Whether it turns at its speed.
-    [[nodiscard]] bool is_stable(Moment at) const;
+    /// Whether it turns steadily enough for measurements.
+    [[nodiscard]] bool is_stable(Moment at) const { return stable_from_ && at >= *stable_from_; }
 
 private:
     [[nodiscard]] double acceleration() const;  // turns per second squared, signed
@@ -43,10 +45,11 @@ private:
     [[nodiscard]] double even_turns(Moment at) const;
 
     MotorTraits traits_;
-    bool on_{};
+    double goal_hz_{};
     Moment commanded_;
     double hz_then_{};     // at the last command
     double turns_then_{};  // at the last command, without the ripple
+    std::optional<Moment> stable_from_;
 };
 
 }  // namespace sweepcast::virtual_lidar

@@ -1,63 +1,54 @@
+// All personas, and what names and numbers them.
 #include "driver/virtual/persona.hpp"
 
+#include "driver/virtual/persona_families.hpp"
 #include "driver/virtual/random.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <system_error>
+#include <vector>
 
 namespace sweepcast::virtual_lidar {
 
 namespace {
 
-using namespace std::chrono_literals;
-using protocol::AnswerType;
-
-// The ids, rates and ranges that an A1 of firmware 1.24 and later reports (protocol.md 6). Its
-// third mode, Boost, is not played.
-constexpr std::array a1m8_modes{
-    ScanMode{"Standard", AnswerType::normal, 500U * 256U, 12U * 256U},
-    ScanMode{"Express", AnswerType::express, 250U * 256U, 12U * 256U},
-};
-
-constexpr std::array all_personas{
-    Persona{
-        .key = "a1m8",
-        .title = "RPLIDAR A1M8",
-        .model = 0x18,
-        .firmware_major = 1,
-        .firmware_minor = 29,
-        .hardware = 7,
-        .baud = 115'200,
-        // 5.5 turns a second is what the belt gives at 5 V. Nothing regulates it: the speeds under
-        // `rotation` are references for an accessory board, which an A1 reports but does not have.
-        .motor = {.rotation_hz = 5.5, .spin_up = 1000ms, .coast_down = 1500ms, .ripple = 0.005},
-        .beam =
-            {.min_distance_mm = 150.0,
-             .max_distance_mm = 12'000.0,
-             .noise_floor_mm = 1.5,
-             .noise_part = 0.002},
-        .rotation = {.desired_rpm = 600, .pwm_reference = 660, .min_rpm = 300, .max_rpm = 900},
-        .modes = a1m8_modes,
-        .typical_mode = 1,
-        // Three lines as A models print them (protocol.md 11.2).
-        .boot_text = "RP LIDAR System.\r\nFirmware Ver 1.29 - rtm, HW Ver 7\r\nModel: 18\r\n",
-        .boot_time = 10ms,
-    },
-};
+const std::vector<Persona>& all_personas() {
+    static const auto all = [] {
+        std::vector<Persona> both;
+        for (const auto family : {triangulation_personas(), time_of_flight_personas()}) {
+            both.insert(both.end(), family.begin(), family.end());
+        }
+        return both;
+    }();
+    return all;
+}
 
 }  // namespace
 
 const Persona* find_persona(std::string_view key) {
-    const auto* const found =
-        std::find_if(all_personas.begin(), all_personas.end(), [key](const Persona& persona) {
-            return persona.key == key;
-        });
-    return found != all_personas.end() ? found : nullptr;
+    const auto& all = all_personas();
+    const auto found = std::ranges::find(all, key, &Persona::key);
+    return found != all.end() ? &*found : nullptr;
 }
 
 std::span<const Persona> personas() {
-    return all_personas;
+    return all_personas();
+}
+
+const ScanMode* find_mode(const Persona& persona, protocol::AnswerType answer) {
+    const auto found = std::ranges::find(persona.modes, answer, &ScanMode::answer);
+    return found != persona.modes.end() ? &*found : nullptr;
+}
+
+protocol::DeviceInfo device_info(const Persona& persona, const SerialNumber& serial) {
+    return {
+        .model = persona.model,
+        .firmware_major = persona.firmware_major,
+        .firmware_minor = persona.firmware_minor,
+        .hardware = persona.hardware,
+        .serial = serial,
+    };
 }
 
 SerialNumber serial_from(std::string_view seed) {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include "driver/protocol/answer_type.hpp"
+#include "driver/protocol/model.hpp"
+#include "driver/protocol/reply.hpp"
 
 #include <array>
 #include <chrono>
@@ -35,9 +37,10 @@ struct RotationConf {
 
 /// How the motor turns.
 struct MotorTraits {
-    double rotation_hz{};
-    std::chrono::milliseconds spin_up{};     ///< from rest to stable
-    std::chrono::milliseconds coast_down{};  ///< from full speed to rest
+    protocol::MotorControl control{};
+    double rotation_hz{};                    ///< turns a second where nothing else is asked for
+    std::chrono::milliseconds spin_up{};     ///< from rest to `rotation_hz`
+    std::chrono::milliseconds coast_down{};  ///< from `rotation_hz` to rest
     double ripple{};                         ///< largest deviation from the speed, as a part of it
 };
 
@@ -49,6 +52,12 @@ struct BeamTraits {
     double noise_part{};      ///< ... and of far ones, as a part of the distance; the larger counts
 };
 
+/// What it is plugged into.
+enum class Connection : std::uint8_t {
+    serial,
+    ethernet,  ///< UDP, unless it is played on a pseudo terminal
+};
+
 struct Persona {
     std::string_view key;    ///< how a user asks for it
     std::string_view title;  ///< how it is called in the log
@@ -56,14 +65,17 @@ struct Persona {
     std::uint8_t firmware_major{};
     std::uint8_t firmware_minor{};
     std::uint8_t hardware{};
+    std::string_view alias{};  ///< of the model's name (GET_LIDAR_CONF 0x81); mostly empty
+    Connection connection{Connection::serial};
     std::uint32_t baud{};
     MotorTraits motor;
     BeamTraits beam;
     RotationConf rotation;
     std::span<const ScanMode> modes;
     std::uint16_t typical_mode{};
-    std::string_view boot_text;             ///< what it prints after RESET
+    std::string_view boot_text{};           ///< what it prints after RESET; may be empty
     std::chrono::milliseconds boot_time{};  ///< from RESET to the first byte of it, deaf meanwhile
+    std::chrono::microseconds answer_time{};  ///< from the end of a request to its answer
 };
 
 /// The persona that a user calls `key`, e.g. "a1m8"; null if there is none.
@@ -72,7 +84,13 @@ const Persona* find_persona(std::string_view key);
 /// All personas.
 std::span<const Persona> personas();
 
+/// The scan mode of this answer type; null if it has none. Of several the first.
+const ScanMode* find_mode(const Persona& persona, protocol::AnswerType answer);
+
 using SerialNumber = std::array<std::uint8_t, 16>;
+
+/// What the exemplar with this serial number says to GET_INFO.
+protocol::DeviceInfo device_info(const Persona& persona, const SerialNumber& serial);
 
 /// The serial number of one exemplar, as a function of any text: the same text, the same number.
 SerialNumber serial_from(std::string_view seed);

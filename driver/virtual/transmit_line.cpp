@@ -18,6 +18,10 @@ std::chrono::nanoseconds time_of_byte(std::uint32_t baud) {
 
 TransmitLine::TransmitLine(std::uint32_t baud) : byte_time_(time_of_byte(baud)) {}
 
+void TransmitLine::set_baud(std::uint32_t baud) {
+    byte_time_ = time_of_byte(baud);
+}
+
 bool TransmitLine::push(Payload payload, std::span<const std::uint8_t> bytes, Moment ready) {
     run_until(ready);
     if (bytes.size() > capacity - queue_.size()) {

@@ -35,8 +35,11 @@ public:
     /// A line of `baud` bits per second, ten bits a byte. `baud` > 0.
     explicit TransmitLine(std::uint32_t baud);
 
-    /// Queues bytes that are there to be sent from `ready` on, which is not before that of the last
-    /// push. Returns false, and queues nothing, if there is no room for all of them.
+    /// Changes the speed, also for what is queued.
+    void set_baud(std::uint32_t baud);
+
+    /// Queues bytes that are there to be sent from `ready` on, behind those of the last push.
+    /// Returns false, and queues nothing, if there is no room for all of them.
     bool push(Payload payload, std::span<const std::uint8_t> bytes, Moment ready);
 
     /// Appends to `out` what has left the line completely by `now` and was not taken before.

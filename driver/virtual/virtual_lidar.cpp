@@ -293,6 +293,8 @@ void VirtualLidar::log_event(const Event& event) {
         return logger_->info("{} reset", port());
     case Occurrence::protection_stop:
         return logger_->warn("{} protection stop", port());
+    case Occurrence::baud_measured:
+        return logger_->info("{} measured {} baud, on trial", port(), emulator_.baud());
     }
 }
 

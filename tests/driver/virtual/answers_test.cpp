@@ -62,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(
         Dialogue{
             "scan_mode_count",
             "A5 84 04 70 00 00 00 55",
-            "A5 5A 06 00 00 00 20 70 00 00 00 02 00"},
+            "A5 5A 06 00 00 00 20 70 00 00 00 03 00"},
         Dialogue{
             "duration_of_mode_0",
             "A5 84 06 71 00 00 00 00 00 56",
@@ -137,7 +137,7 @@ INSTANTIATE_TEST_SUITE_P(
             "A5 5A 04 00 00 00 20 00 00 00 70"},
         Dialogue{
             "mode_it_lacks_echoes",
-            "A5 84 06 71 00 00 00 02 00 54",
+            "A5 84 06 71 00 00 00 03 00 55",
             "A5 5A 04 00 00 00 20 71 00 00 00"},
         Dialogue{
             "mode_that_is_not_given_echoes",

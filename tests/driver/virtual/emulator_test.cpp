@@ -269,7 +269,7 @@ TEST(Emulator, IsNeverFasterThanItsLine) {
 TEST(Emulator, TellsWhenItIsDueNext) {
     FakeHost host;
     host.send(Command::scan);
-    EXPECT_EQ(host.emulator.next_due(), host.now + 86806ns) << "a byte of the descriptor";
+    EXPECT_EQ(host.emulator.next_due(), host.now + 500us + 86806ns) << "a byte of the descriptor";
     host.run(10ms);
     EXPECT_EQ(host.emulator.next_due(), host.now + 990ms) << "the rotation is stable";
     host.run(990ms);

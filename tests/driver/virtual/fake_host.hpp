@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -32,12 +33,21 @@ public:
     using Duration = std::chrono::nanoseconds;
 
     explicit FakeHost(std::shared_ptr<const World> world = test_world())
-        : emulator(
+        : FakeHost("a1m8", {}, std::move(world)) {}
+
+    explicit FakeHost(
+        std::string_view key,
+        const EmulatorSettings& settings = {},
+        std::shared_ptr<const World> world = test_world()
+    )
+        : persona(*find_persona(key))
+        , emulator(
               persona,
               test_serial,
               Beam(std::move(world), persona.beam, {.noise_mm = 0.0}),
               now,
-              [this](const Event& event) { events.push_back(event.what); }
+              [this](const Event& event) { events.push_back(event.what); },
+              settings
           ) {}
 
     /// Sends bytes and takes what has come until now.
@@ -62,6 +72,17 @@ public:
     /// Runs until the motor is up to speed.
     void spin_up() { run(persona.motor.spin_up); }
 
+    /// Switches the motor on, as hosts of this persona do, and runs until it is up to speed.
+    void switch_on_and_spin_up() {
+        using protocol::MotorControl;
+        if (persona.motor.control == MotorControl::accessory_board) {
+            send(protocol::encode(protocol::set_motor_pwm_request(persona.rotation.pwm_reference)));
+        } else if (persona.motor.control == MotorControl::rpm) {
+            send(protocol::encode(protocol::motor_rpm_request(persona.rotation.desired_rpm)));
+        }
+        run(persona.motor.spin_up * 3 / 2);
+    }
+
     /// Everything received so far, and forgets it.
     Bytes received() {
         Bytes all;
@@ -82,7 +103,7 @@ public:
         return found;
     }
 
-    const Persona& persona = *find_persona("a1m8");
+    const Persona& persona;
     Moment now{std::chrono::hours(1)};
     std::vector<Transmitted> transmitted;
     std::vector<Occurrence> events;

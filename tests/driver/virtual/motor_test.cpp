@@ -11,6 +11,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr MotorTraits traits{
+    .control = protocol::MotorControl::rpm,
     .rotation_hz = 5.0,
     .spin_up = 1000ms,
     .coast_down = 2000ms,
@@ -19,7 +20,7 @@ constexpr Moment start{};
 
 Motor running() {
     Motor motor(traits, start);
-    motor.switch_to(true, start);
+    motor.turn_at(5.0, start);
     return motor;
 }
 
@@ -65,7 +66,7 @@ TEST(Motor, WandersRoundItsSpeedByNoMoreThanTheRipple) {
 
 TEST(Motor, CoastsDownAndRests) {
     auto motor = running();
-    motor.switch_to(false, start + 10s);
+    motor.turn_at(0.0, start + 10s);
     EXPECT_FALSE(motor.is_stable(start + 10s));
     EXPECT_DOUBLE_EQ(motor.rotation_hz(start + 11s), 2.5);
     EXPECT_DOUBLE_EQ(motor.rotation_hz(start + 12s), 0.0);
@@ -76,7 +77,7 @@ TEST(Motor, NeverJumpsAtACommand) {
     auto motor = running();
     for (auto t = start + 100ms; t < start + 6s; t += 370ms) {
         const double before = motor.turns(t);
-        motor.switch_to(!motor.is_on(), t);
+        motor.turn_at(motor.is_on() ? 0.0 : 5.0, t);
         EXPECT_NEAR(motor.turns(t), before, 1e-9);
     }
 }
@@ -86,7 +87,7 @@ TEST(Motor, NeverTurnsBack) {
     double last = 0.0;
     for (auto t = start; t < start + 6s; t += 1ms) {
         if (t == start + 3s) {
-            motor.switch_to(false, t);
+            motor.turn_at(0.0, t);
         }
         EXPECT_GE(motor.turns(t), last);
         last = motor.turns(t);
@@ -95,16 +96,34 @@ TEST(Motor, NeverTurnsBack) {
 
 TEST(Motor, IsStableSoonerIfItWasStillTurning) {
     auto motor = running();
-    motor.switch_to(false, start + 10s);
-    motor.switch_to(true, start + 11s);  // half the speed is left
+    motor.turn_at(0.0, start + 10s);
+    motor.turn_at(5.0, start + 11s);  // half the speed is left
     EXPECT_EQ(motor.stable_from(), start + 11'500ms);
 }
 
 TEST(Motor, TakesNoNoticeOfACommandThatChangesNothing) {
     auto motor = running();
-    EXPECT_FALSE(motor.switch_to(true, start + 500ms));
+    EXPECT_FALSE(motor.turn_at(5.0, start + 500ms));
     EXPECT_EQ(motor.stable_from(), start + 1s);
-    EXPECT_TRUE(motor.switch_to(false, start + 600ms));
+    EXPECT_TRUE(motor.turn_at(0.0, start + 600ms));
+}
+
+TEST(Motor, GoesToAnotherSpeedWithInertiaAndStaysStable) {
+    auto motor = running();
+    motor.turn_at(7.0, start + 10s);
+    EXPECT_TRUE(motor.is_stable(start + 10s));
+    EXPECT_DOUBLE_EQ(motor.rotation_hz(start + 10'200ms), 6.0);
+    EXPECT_DOUBLE_EQ(motor.rotation_hz(start + 10'400ms), 7.0);
+    motor.turn_at(2.0, start + 20s);
+    EXPECT_TRUE(motor.is_stable(start + 20s));
+    EXPECT_DOUBLE_EQ(motor.rotation_hz(start + 21s), 4.5);
+    EXPECT_DOUBLE_EQ(motor.rotation_hz(start + 30s), 2.0);
+}
+
+TEST(Motor, IsNotStableSoonerForAnotherSpeedInMidSpinUp) {
+    auto motor = running();
+    motor.turn_at(10.0, start + 500ms);
+    EXPECT_EQ(motor.stable_from(), start + 2s);
 }
 
 }  // namespace

@@ -1,9 +1,13 @@
 // Personas: each is complete and consistent, and serial numbers are what they should be.
 #include "driver/virtual/persona.hpp"
 
-#include "driver/virtual/measurement_stream.hpp"
+#include "driver/virtual/packer.hpp"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
 
 namespace sweepcast::virtual_lidar {
 namespace {
@@ -21,9 +25,7 @@ TEST(Persona, PlaysOnlyModesThatFitOnItsLine) {
         EXPECT_LT(persona.typical_mode, persona.modes.size()) << persona.key;
         EXPECT_EQ(persona.modes.front().answer, protocol::AnswerType::normal) << persona.key;
         for (const auto& mode : persona.modes) {
-            ASSERT_TRUE(can_stream(mode.answer)) << persona.key << ' ' << mode.name;
-            const bool normal = mode.answer == protocol::AnswerType::normal;
-            const double samples = normal ? 1.0 : 32.0;
+            const auto samples = static_cast<double>(make_packer(mode.answer)->samples());
             const double packet_s =
                 samples * std::chrono::duration<double>(mode.sample_duration()).count();
             const auto bytes = static_cast<double>(protocol::packet_size(mode.answer));
@@ -33,12 +35,71 @@ TEST(Persona, PlaysOnlyModesThatFitOnItsLine) {
 }
 
 TEST(Persona, SaysInItsBootTextWhatItSaysInItsDeviceInfo) {
-    const auto& a1 = *find_persona("a1m8");
-    EXPECT_EQ(a1.boot_text.size(), 64U);
-    EXPECT_NE(a1.boot_text.find("Ver 1.29"), std::string_view::npos);
-    EXPECT_NE(a1.boot_text.find("HW Ver 7"), std::string_view::npos);
-    EXPECT_NE(a1.boot_text.find("Model: 18"), std::string_view::npos);
-    EXPECT_EQ(a1.boot_text.find('\xA5'), std::string_view::npos);
+    int with_text = 0;
+    for (const auto& persona : personas()) {
+        const auto text = persona.boot_text;
+        if (text.empty()) {
+            continue;
+        }
+        ++with_text;
+        EXPECT_EQ(text.size(), 64U) << persona.key;
+        const auto version = "Ver " + std::to_string(persona.firmware_major) + "." +
+                             std::to_string(persona.firmware_minor);
+        EXPECT_NE(text.find(version), std::string_view::npos) << persona.key;
+        const auto hardware = "HW Ver " + std::to_string(persona.hardware);
+        EXPECT_NE(text.find(hardware), std::string_view::npos) << persona.key;
+        constexpr std::string_view digits = "0123456789ABCDEF";
+        const auto model = std::string("Model: ") + digits[persona.model >> 4] +
+                           digits[persona.model & 15] + "\r\n";
+        EXPECT_TRUE(text.ends_with(model)) << persona.key;
+        EXPECT_EQ(text.find('\xA5'), std::string_view::npos) << persona.key;
+    }
+    EXPECT_EQ(with_text, 5) << "the A series";
+}
+
+struct Known {
+    const char* key;
+    const char* name;  ///< as the vendor forms it from the model number
+    std::uint32_t baud;
+    const char* typical;
+};
+
+TEST(Persona, IsOneOfTheModelsKnown) {
+    const std::vector<Known> all{
+        {"a1m8", "A1M8", 115'200, "Express"},
+        {"a2m8", "A2M8", 115'200, "Sensitivity"},
+        {"a2m8-old", "A2M8", 115'200, "Express"},
+        {"a2m12", "A2M12", 256'000, "Sensitivity"},
+        {"a3m1", "A3M1", 256'000, "Sensitivity"},
+        {"s1", "S1M1", 256'000, "DenseBoost"},
+        {"s2", "S2M1", 1'000'000, "DenseBoost"},
+        {"s3", "S3M1", 1'000'000, "DenseBoost"},
+        {"c1", "C1M1", 460'800, "UltraDense"},
+        {"t1", "T1M1", 1'000'000, "Sensitivity"}};
+    EXPECT_EQ(personas().size(), all.size());
+    for (const auto& known : all) {
+        const auto* const persona = find_persona(known.key);
+        ASSERT_NE(persona, nullptr) << known.key;
+        EXPECT_EQ(protocol::model_name(persona->model), known.name);
+        EXPECT_EQ(persona->baud, known.baud) << known.key;
+        EXPECT_EQ(persona->modes[persona->typical_mode].name, known.typical) << known.key;
+        EXPECT_EQ(persona->motor.control, protocol::motor_control_of(persona->model)) << known.key;
+    }
+}
+
+TEST(Persona, StreamsEveryAnswerTypeOnOneOrAnother) {
+    using protocol::AnswerType;
+    for (const auto type :
+         {AnswerType::normal,
+          AnswerType::express,
+          AnswerType::hq,
+          AnswerType::ultra,
+          AnswerType::dense,
+          AnswerType::ultra_dense}) {
+        EXPECT_TRUE(std::ranges::any_of(personas(), [type](const Persona& persona) {
+            return find_mode(persona, type) != nullptr;
+        })) << static_cast<int>(type);
+    }
 }
 
 TEST(SerialNumber, DependsOnTheSeedAlone) {
