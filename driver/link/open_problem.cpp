@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <fcntl.h>
 #include <grp.h>
+#include <iterator>
 #include <pwd.h>
 #include <string_view>
 #include <sys/stat.h>
@@ -29,6 +31,28 @@ std::string name_of_user(uid_t uid) {
     passwd* found = nullptr;
     ::getpwuid_r(uid, &entry, buffer.data(), buffer.size(), &found);
     return found != nullptr ? found->pw_name : std::to_string(uid);
+}
+
+/// Whether `user` is in `gid` by the user database, though this process is not: it was put into the
+/// group after it logged in.
+bool joined_since_login(const std::string& user, gid_t gid) {
+    std::array<gid_t, 256> of_process{};
+    const int count = ::getgroups(static_cast<int>(of_process.size()), of_process.data());
+    const auto end = std::next(of_process.cbegin(), std::max(count, 0));
+    if (::getegid() == gid || std::find(of_process.cbegin(), end, gid) != end) {
+        return false;
+    }
+    std::array<char, 4096> buffer{};
+    group entry{};
+    group* found = nullptr;
+    ::getgrgid_r(gid, &entry, buffer.data(), buffer.size(), &found);
+    for (char** name = found != nullptr ? found->gr_mem : nullptr; name != nullptr && *name;
+         ++name) {
+        if (user == *name) {
+            return true;
+        }
+    }
+    return false;
 }
 
 std::string text_of(int error) {
@@ -73,6 +97,14 @@ Problem explain_permission(const std::string& path, int error, const PortFacts& 
                        "; as a service: allow the device (DeviceAllow=)";
     } else if (facts.mode && (*facts.mode & group_may) == group_may && facts.group != "root") {
         problem.cause += ", which belongs to group " + facts.group;
+        if (facts.member) {
+            problem.cause += ": it is in that group, but this login does not know yet";
+            problem.hint =
+                "log out and in again, or restart the service (for this terminal alone: "
+                "newgrp " +
+                facts.group + ")";
+            return problem;
+        }
         problem.hint = "sudo usermod -aG " + facts.group + " " + facts.user +
                        " ; then log in again, or restart the service";
     } else {
@@ -98,6 +130,11 @@ constexpr std::array<KnownHolder, 3> known_holders{{
 }};
 
 std::string hint_to_stop(const PortHolder& holder) {
+    if (holder.command == "sweepcast") {
+        return "if that is a gateway, its page and its API show this lidar (curl "
+               "http://127.0.0.1:8080/api/v1/lidars); else stop it first (kill " +
+               std::to_string(holder.pid) + ")";
+    }
     const auto* known =
         std::find_if(known_holders.begin(), known_holders.end(), [&](const auto& entry) {
             return entry.command == holder.command;
@@ -154,16 +191,21 @@ Problem explain_io_error(const std::string& path, int error, const PortFacts& fa
 
 PortFacts gather_port_facts(const std::string& path) {
     PortFacts facts;
+    facts.user = name_of_user(::geteuid());
     struct stat status {};
     if (::stat(path.c_str(), &status) == 0) {
         facts.mode = status.st_mode;
         facts.group = name_of_group(status.st_gid);
+        facts.member = joined_since_login(facts.user, status.st_gid);
     }
-    facts.user = name_of_user(::geteuid());
     facts.holders = find_port_holders(path);
     facts.ports = list_usb_ports();
     facts.own_pid = ::getpid();
     return facts;
+}
+
+int find_open_obstacle(const std::string& path) {
+    return ::faccessat(AT_FDCWD, path.c_str(), R_OK | W_OK, AT_EACCESS) == 0 ? 0 : errno;
 }
 
 errc classify_open_error(int error) {

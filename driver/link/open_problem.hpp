@@ -16,9 +16,10 @@ namespace sweepcast::link {
 
 /// What the system knows of a port that could not be opened.
 struct PortFacts {
-    std::optional<mode_t> mode;       ///< of the device file, if there is one
-    std::string group;                ///< that owns the device file, e.g. "dialout"
-    std::string user;                 ///< as whom we run
+    std::optional<mode_t> mode;  ///< of the device file, if there is one
+    std::string group;           ///< that owns the device file, e.g. "dialout"
+    std::string user;            ///< as whom we run
+    bool member{};  ///< the user has been put into the group, which this login does not know yet
     std::vector<PortHolder> holders;  ///< who has it open
     std::vector<SerialPort> ports;    ///< the USB ports there are
     pid_t own_pid{};
@@ -26,6 +27,10 @@ struct PortFacts {
 
 /// Asks the system about `path`.
 PortFacts gather_port_facts(const std::string& path);
+
+/// What forbids us to read and write `path`, without opening it, which would disturb others: an
+/// errno value, 0 if nothing does.
+int find_open_obstacle(const std::string& path);
 
 /// The link error that stands for what open(2), flock(2) or ioctl(2) reported of a port.
 errc classify_open_error(int error);

@@ -38,6 +38,15 @@ TEST(OpenProblem, NamesTheGroupAndTheCommandThatGivePermission) {
     EXPECT_THAT(problem.hint, HasSubstr("log in again"));
 }
 
+TEST(OpenProblem, TellsAMemberWhoseLoginDoesNotKnowYetToLogInAgain) {
+    PortFacts facts = a_port();
+    facts.member = true;
+    const Problem problem = explain_open_error(path, EACCES, facts);
+    EXPECT_THAT(problem.cause, HasSubstr("this login does not know yet"));
+    EXPECT_THAT(problem.hint, HasSubstr("log out and in again"));
+    EXPECT_THAT(problem.hint, testing::Not(HasSubstr("usermod")));
+}
+
 TEST(OpenProblem, AdvisesNoGroupThatCouldNotOpenThePortEither) {
     PortFacts facts = a_port();
     facts.mode = S_IFCHR | 0600;
@@ -103,6 +112,14 @@ TEST(OpenProblem, KnowsHowToStopModemManager) {
     );
 }
 
+TEST(OpenProblem, PointsToTheGatewayThatHoldsThePort) {
+    PortFacts facts = a_port();
+    facts.holders = {{812, "sweepcast"}};
+    const Problem problem = explain_open_error(path, EBUSY, facts);
+    EXPECT_THAT(problem.hint, HasSubstr("/api/v1/lidars"));
+    EXPECT_THAT(problem.hint, HasSubstr("kill 812"));
+}
+
 TEST(OpenProblem, SaysThatWeHoldThePortOurselves) {
     PortFacts facts = a_port();
     facts.holders = {{1, "sweepcast"}};
@@ -113,6 +130,11 @@ TEST(OpenProblem, SaysHowToFindAHolderThatWeMayNotSee) {
     const Problem problem = explain_open_error(path, EBUSY, a_port());
     EXPECT_EQ(problem.cause, "/dev/ttyUSB0 is in use by a process of another user");
     EXPECT_THAT(problem.hint, HasSubstr("sudo fuser -v /dev/ttyUSB0"));
+}
+
+TEST(OpenObstacle, IsNoneForAFileThatMayBeOpenedAndToldForAMissingOne) {
+    EXPECT_EQ(find_open_obstacle("/dev/null"), 0);
+    EXPECT_EQ(find_open_obstacle("/dev/nonexistent"), ENOENT);
 }
 
 TEST(OpenProblem, SaysThatNoHardwareAnswers) {
