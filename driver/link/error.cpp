@@ -18,9 +18,11 @@ public:
         case errc::interrupted:
             return "the operation was interrupted";
         case errc::disconnected:
-            return "the device is gone: unplugged or powered off";
+            return "the device is gone: unplugged, powered off or no longer reachable";
         case errc::no_modem_lines:
             return "the line has no modem lines (DTR)";
+        case errc::no_line_speed:
+            return "the line has no baud rate";
         case errc::port_not_found:
             return "there is no such port";
         case errc::permission_denied:
@@ -33,6 +35,12 @@ public:
             return "the adapter cannot run at this baud rate";
         case errc::io_error:
             return "the port could not be opened";
+        case errc::host_not_found:
+            return "there is no such host";
+        case errc::connection_refused:
+            return "nothing listens on this port of the host";
+        case errc::unreachable:
+            return "the host cannot be reached";
         }
         return "unknown link error " + std::to_string(value);
     }

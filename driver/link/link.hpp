@@ -49,11 +49,22 @@ public:
     /// Errors: errc::no_modem_lines, errc::disconnected, or else the system's own code.
     virtual Result<void> set_dtr(bool asserted) = 0;
 
+    /// Changes the speed of the line to `baud` bits per second. The port stays open, so that DTR
+    /// keeps its state; what arrived at the old speed and was not read yet is thrown away. What was
+    /// just written may still be on its way and is then sent at the new speed: await its answer
+    /// first.
+    /// Errors: errc::no_line_speed on a network link, errc::baud_not_supported (the speed is the
+    /// old one then), errc::disconnected, or else the system's own code.
+    virtual Result<void> set_baud(std::uint32_t baud) = 0;
+
     /// Throws away what has arrived and was not read yet. Returns at once.
     virtual void flush_input() = 0;
 
-    /// Line speed in bits per second, for the timing of samples.
+    /// Line speed in bits per second, for the timing of samples; 0 on a network link.
     [[nodiscard]] virtual std::uint32_t baud() const = 0;
+
+    /// Whether bytes come over a network: no line speed, no modem lines, times that jitter more.
+    [[nodiscard]] virtual bool is_network() const = 0;
 
     /// Gives the port back. Pending operations end with errc::interrupted, later ones with
     /// errc::disconnected. Closing twice is harmless.

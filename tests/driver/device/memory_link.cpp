@@ -58,4 +58,13 @@ Result<void> MemoryLink::set_dtr(bool asserted) {
     return {};
 }
 
+Result<void> MemoryLink::set_baud(std::uint32_t baud) {
+    if (is_network()) {
+        return make_error_code(link::errc::no_line_speed);
+    }
+    line_.baud = baud;
+    flush_input();
+    return {};
+}
+
 }  // namespace sweepcast::device

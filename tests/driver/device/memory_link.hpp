@@ -24,6 +24,8 @@ struct Line {
     /// The last DTR set by the driver: asserted or released.
     std::optional<bool> dtr;
     bool has_dtr{true};
+    /// The speed the driver talks at; 0 makes it a network link.
+    std::uint32_t baud{115200};
 
     /// Sends bytes to the driver.
     void send(std::span<const std::uint8_t> bytes) {
@@ -53,7 +55,9 @@ public:
     void interrupt() override;
     Result<void> set_dtr(bool asserted) override;
     void flush_input() override { line_.to_host.clear(); }
-    [[nodiscard]] std::uint32_t baud() const override { return 115200; }
+    Result<void> set_baud(std::uint32_t baud) override;
+    [[nodiscard]] std::uint32_t baud() const override { return line_.baud; }
+    [[nodiscard]] bool is_network() const override { return line_.baud == 0; }
     void close() override {}
 
 private:
