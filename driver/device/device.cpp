@@ -2,6 +2,7 @@
 
 #include "driver/device/advice.hpp"
 #include "driver/device/error.hpp"
+#include "driver/device/probe.hpp"
 #include "driver/link/error.hpp"
 #include "driver/protocol/decode.hpp"
 #include "driver/protocol/model.hpp"
@@ -175,7 +176,7 @@ asio::awaitable<Problem> Device::live_guarded() {
 /// One connection, from opening the port to losing it. Returns what ended it.
 asio::awaitable<Problem> Device::live() {
     set_phase(Phase::identifying);
-    auto opened = open_link_();
+    auto opened = co_await open_link_(default_baud);
     if (!opened) {
         co_return opened.error();
     }
@@ -285,12 +286,17 @@ asio::awaitable<Result<void>>
 Device::deliver_sweeps(Conversation& talk, protocol::AnswerType type, const ScanMode& mode) {
     auto decoder = protocol::Decoder::create(
         type,
-        {std::chrono::round<std::chrono::microseconds>(mode.sample_duration), link_->baud(), false}
+        {std::chrono::round<std::chrono::microseconds>(mode.sample_duration),
+         link_->baud(),
+         link_->is_network()}
     );
     if (!decoder) {
         co_return decoder.error();
     }
-    const std::chrono::nanoseconds per_byte(10'000'000'000LL / std::max(link_->baud(), 1U));
+    // A network hands over what came in a datagram or segment at once.
+    const std::chrono::nanoseconds per_byte(
+        link_->is_network() ? 0 : 10'000'000'000LL / std::max(link_->baud(), 1U)
+    );
     protocol::SweepAssembler assembler;
     protocol::Decoded decoded;
     std::vector<protocol::Sweep> finished;

@@ -31,8 +31,10 @@ public:
     virtual void on_sweep(CapturedSweep sweep) = 0;
 };
 
-/// Opens the device's port anew; called for every attempt.
-using OpenLink = std::function<Result<std::unique_ptr<link::Link>, Problem>()>;
+/// Opens the way to the device anew, at `baud` bits per second if it is a serial port; called for
+/// every attempt.
+using OpenLink = std::function<
+    boost::asio::awaitable<Result<std::unique_ptr<link::Link>, Problem>>(std::uint32_t baud)>;
 
 struct DeviceOptions {
     /// Start scanning as soon as the device is there.

@@ -1,6 +1,8 @@
 // Telling paths from URLs, and taking URLs apart with Boost.URL.
 #include "driver/link/link_url.hpp"
 
+#include "driver/link/small_file.hpp"
+
 #include <boost/url/parse.hpp>
 #include <boost/url/parse_query.hpp>
 #include <boost/url/url_view.hpp>
@@ -84,7 +86,7 @@ Result<LinkUrl, Problem> serial_url(
         if (!place.baud) {
             return bad_url(
                 text,
-                fmt::format("\"{}\" is no line speed", parameter.value),
+                fmt::format("\"{}\" is no line speed", printable(parameter.value)),
                 fmt::format(
                     "write bits per second, from {} to {}; RPLIDARs use 115200, 256000, 460800 and "
                     "1000000",
@@ -185,7 +187,10 @@ Result<LinkUrl, Problem> parse_link_url(std::string_view text) {
     std::vector<UrlParameter> others;
     auto url = parse_link_url(text, others);
     if (url && !others.empty()) {
-        return bad_url(text, fmt::format("unknown parameter \"{}\"", others.front().key));
+        return bad_url(
+            text,
+            fmt::format("unknown parameter \"{}\"", printable(others.front().key))
+        );
     }
     return url;
 }

@@ -1,8 +1,7 @@
 #include "server/gateway/gateway.hpp"
 
 #include "driver/device/advice.hpp"
-#include "driver/device/probe.hpp"
-#include "driver/link/serial_link.hpp"
+#include "driver/link/open_link.hpp"
 #include "server/http/http_session.hpp"
 #include "server/net/endpoint.hpp"
 #include "server/stream/messages.hpp"
@@ -190,20 +189,21 @@ Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make
     // number.
     const auto name = ids_.claim(number, port_name(url), port_name(url));
     LidarPlace place{number, url.text, name, false, url.is_stand_in, {}};
-    std::string path;
+    link::LinkUrl way;
     if (const auto* wanted = std::get_if<VirtualLidarUrl>(&url.where)) {
         auto port = virtual_lidars_.add(*wanted, number, make_logger(place.port_name));
         if (!port) {
             return port.error();
         }
-        path = *port;
+        way = {*port, link::SerialPlace{*port, std::nullopt}};
         place.is_virtual = true;
     } else {
-        path = std::get<SerialLidar>(url.where).path;
+        way = std::get<link::LinkUrl>(url.where);
     }
     const auto executor = workers_[(number - 1) % workers_.size()]->executor();
-    place.open_link = [executor, path] {
-        return link::open_serial(executor, path, device::default_baud);
+    place.open_link = [executor, way](std::uint32_t baud) {
+        const auto* serial = std::get_if<link::SerialPlace>(&way.where);
+        return link::open_link(executor, way, serial ? serial->baud.value_or(baud) : baud);
     };
     return place;
 }

@@ -1,63 +1,145 @@
 #include "server/gateway/lidar_url.hpp"
 
+#include "driver/link/small_file.hpp"
+
 #include <boost/url/parse.hpp>
 #include <boost/url/url_view.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <utility>
+#include <vector>
 
 namespace sweepcast::gateway {
 
 namespace {
 
 constexpr std::string_view virtual_scheme = "virtual:";
+constexpr std::size_t longest_name = 64;
+constexpr std::size_t longest_mode = 64;
 
-Problem bad_url(std::string_view text, std::string_view what) {
+using Parameters = std::vector<link::UrlParameter>;
+
+Problem bad_url(std::string_view text, std::string_view what, std::string hint) {
     return {
         make_error_code(boost::system::errc::invalid_argument),
         fmt::format("lidar \"{}\": {}", text, what),
-        "write a serial port such as /dev/ttyUSB0, or virtual:a1m8, or virtual:a1m8?world=FILE"};
+        std::move(hint)};
 }
 
-Result<VirtualLidarUrl, Problem> parse_virtual(std::string_view text) {
+Result<LidarUrl, Problem> parse_virtual(std::string_view text, Parameters& others) {
     const auto url = boost::urls::parse_uri(text);
     if (!url || url->path().empty()) {
-        return bad_url(text, "not a URL of a virtual lidar");
+        return bad_url(
+            text,
+            "not a URL of a virtual lidar",
+            "write virtual:a1m8, or virtual:a1m8?world=FILE"
+        );
     }
     VirtualLidarUrl lidar{url->path(), ""};
     for (const auto& parameter : url->params()) {
-        if (parameter.key != "world") {
+        if (parameter.key == "world") {
+            lidar.world = parameter.value;
+        } else {
+            others.push_back({std::string(parameter.key), std::string(parameter.value)});
+        }
+    }
+    return LidarUrl{std::string(text), std::move(lidar)};
+}
+
+Result<LidarUrl, Problem> parse_place(std::string_view text, Parameters& others) {
+    if (text.starts_with(virtual_scheme)) {
+        return parse_virtual(text, others);
+    }
+    auto url = link::parse_link_url(text, others);
+    if (!url) {
+        auto problem = url.error();
+        problem.cause = "lidar " + problem.cause;
+        problem.hint += "; or a virtual lidar: virtual:a1m8";
+        return problem;
+    }
+    return LidarUrl{std::string(text), std::move(*url)};
+}
+
+bool is_name(std::string_view name) {
+    return !name.empty() && name.size() <= longest_name &&
+           std::all_of(name.begin(), name.end(), [](char c) {
+               return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                      c == '.' || c == '_' || c == '-';
+           });
+}
+
+std::optional<double> parse_hz(std::string_view text) {
+    double hz{};
+    const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), hz);
+    const bool is_number = ec == std::errc() && end == text.data() + text.size();
+    // Written so that NaN fails.
+    return is_number && hz >= slowest_hz && hz <= fastest_hz ? std::optional(hz) : std::nullopt;
+}
+
+/// Takes in one of the parameters that any lidar may have.
+Result<void, Problem> apply(LidarUrl& url, const link::UrlParameter& parameter) {
+    if (parameter.key == "name") {
+        if (!is_name(parameter.value)) {
             return bad_url(
-                text,
-                fmt::format("unknown parameter \"{}\"", std::string(parameter.key))
+                url.text,
+                fmt::format("\"{}\" cannot be a lidar's name", link::printable(parameter.value)),
+                fmt::format("a name has 1 to {} of A-Z a-z 0-9 . _ -", longest_name)
             );
         }
-        lidar.world = parameter.value;
+        url.name = parameter.value;
+        return {};
     }
-    return lidar;
+    if (parameter.key == "mode") {
+        if (parameter.value.empty() || parameter.value.size() > longest_mode) {
+            return bad_url(
+                url.text,
+                "names no scan mode",
+                "write the mode's name or id, such as mode=Boost or mode=2"
+            );
+        }
+        url.mode = parameter.value;
+        return {};
+    }
+    if (parameter.key == "hz") {
+        url.hz = parse_hz(parameter.value);
+        if (!url.hz) {
+            return bad_url(
+                url.text,
+                fmt::format("\"{}\" is no rotation speed", link::printable(parameter.value)),
+                fmt::format("write rotations per second, {} to {}", slowest_hz, fastest_hz)
+            );
+        }
+        return {};
+    }
+    return bad_url(
+        url.text,
+        fmt::format("unknown parameter \"{}\"", link::printable(parameter.key)),
+        "there are: name=ID, mode=NAME, hz=SPEED; for a serial port also baud=RATE, as in "
+        "/dev/ttyUSB0?baud=256000; for a virtual lidar world=FILE, as in virtual:a1m8?world=FILE"
+    );
 }
 
 }  // namespace
 
 Result<LidarUrl, Problem> parse_lidar_url(std::string_view text) {
-    if (text.starts_with(virtual_scheme)) {
-        auto lidar = parse_virtual(text);
-        if (!lidar) {
-            return lidar.error();
+    Parameters others;
+    auto url = parse_place(text, others);
+    if (!url) {
+        return url;
+    }
+    for (const auto& parameter : others) {
+        if (auto applied = apply(*url, parameter); !applied) {
+            return applied.error();
         }
-        return LidarUrl{std::string(text), std::move(*lidar), false};
     }
-    if (text.empty() || text.find("://") != std::string_view::npos) {
-        return bad_url(text, "not a port or URL known here");
-    }
-    return LidarUrl{std::string(text), SerialLidar{std::string(text)}, false};
+    return url;
 }
 
 std::string port_name(const LidarUrl& url) {
-    if (const auto* serial = std::get_if<SerialLidar>(&url.where)) {
-        return serial->path.substr(
-            serial->path.rfind('/') + 1
-        );  // npos + 1 is 0: no slash, whole path
+    if (const auto* way = std::get_if<link::LinkUrl>(&url.where)) {
+        return link::short_name(*way);
     }
     return "virtual-" + std::get<VirtualLidarUrl>(url.where).model;
 }

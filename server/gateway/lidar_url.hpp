@@ -1,18 +1,15 @@
-// Where a lidar is, as users write it.
+// Where a lidar is and how it is wanted, as users write it.
 #pragma once
 
+#include "driver/link/link_url.hpp"
 #include "driver/protocol/result.hpp"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 
 namespace sweepcast::gateway {
-
-/// A scanner on a serial port.
-struct SerialLidar {
-    std::string path;
-};
 
 /// A virtual lidar that the gateway starts itself, on a pseudo terminal of its own.
 struct VirtualLidarUrl {
@@ -20,18 +17,28 @@ struct VirtualLidarUrl {
     std::string world;  ///< file; empty: the built-in room
 };
 
+/// Rotations per second that may be asked for.
+inline constexpr double slowest_hz = 1;
+inline constexpr double fastest_hz = 30;
+
 struct LidarUrl {
     std::string text;  ///< as the user wrote it
-    std::variant<SerialLidar, VirtualLidarUrl> where;
+    std::variant<link::LinkUrl, VirtualLidarUrl> where;
+    std::string name{};          ///< the id it is to have; empty: by its serial number
+    std::string mode{};          ///< scan mode by name or id; empty: not asked for
+    std::optional<double> hz{};  ///< rotations per second; none: not asked for
     /// Nobody asked for it: it stands in for a lidar that was not found.
     bool is_stand_in{};
 };
 
-/// Reads "/dev/ttyUSB0" (any path) or "virtual:a1m8", "virtual:a1m8?world=FILE".
+/// Reads a link's URL (see link::parse_link_url) or "virtual:a1m8", "virtual:a1m8?world=FILE"; all
+/// with the parameters that any lidar may have: "name=left" (1 to 64 of A-Z a-z 0-9 . _ -),
+/// "mode=Boost" (name or id), "hz=7.5" (slowest_hz to fastest_hz).
+/// The Problem names what is wrong and shows what can be written.
 [[nodiscard]] Result<LidarUrl, Problem> parse_lidar_url(std::string_view text);
 
-/// The name a lidar goes by until it has been identified: the last part of its port's path, or
-/// "virtual-a1m8".
+/// The name a lidar goes by until it has been identified: the last part of its port's path, its
+/// host, or "virtual-a1m8".
 [[nodiscard]] std::string port_name(const LidarUrl& url);
 
 }  // namespace sweepcast::gateway

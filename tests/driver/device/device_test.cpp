@@ -47,12 +47,14 @@ public:  // the tests' coroutines are lambdas, which inherit no access
 
     Device& make_device(DeviceOptions options = {.retry_delay = 1ms}) {
         options.health_interval = 10ms;
-        auto open = [this]() -> Result<std::unique_ptr<link::Link>, Problem> {
+        const auto open = [this](std::uint32_t baud
+                          ) -> asio::awaitable<Result<std::unique_ptr<link::Link>, Problem>> {
             ++opened;
+            line.baud = baud;
             if (open_problem) {
-                return *open_problem;
+                co_return *open_problem;
             }
-            return std::unique_ptr<link::Link>(std::make_unique<MemoryLink>(line));
+            co_return std::unique_ptr<link::Link>(std::make_unique<MemoryLink>(line));
         };
         device = std::make_unique<Device>(context.get_executor(), open, options, *this, log);
         return *device;

@@ -1,15 +1,19 @@
 // URLs of lidars, right and wrong.
 #include "server/gateway/lidar_url.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace sweepcast::gateway {
 namespace {
 
+using testing::HasSubstr;
+
 TEST(ParseLidarUrl, TakesAPathForASerialPort) {
     const auto url = parse_lidar_url("/dev/ttyUSB0");
     ASSERT_TRUE(url);
-    EXPECT_EQ(std::get<SerialLidar>(url->where).path, "/dev/ttyUSB0");
+    const auto& way = std::get<link::LinkUrl>(url->where);
+    EXPECT_EQ(std::get<link::SerialPlace>(way.where).path, "/dev/ttyUSB0");
     EXPECT_EQ(port_name(*url), "ttyUSB0");
 }
 
@@ -17,6 +21,14 @@ TEST(ParseLidarUrl, ARelativePathIsOneToo) {
     const auto url = parse_lidar_url("lidar");
     ASSERT_TRUE(url);
     EXPECT_EQ(port_name(*url), "lidar");
+}
+
+TEST(ParseLidarUrl, ReadsALidarOnTheNetwork) {
+    const auto url = parse_lidar_url("udp://192.168.11.2?hz=7");
+    ASSERT_TRUE(url);
+    const auto& way = std::get<link::LinkUrl>(url->where);
+    EXPECT_EQ(std::get<link::UdpPlace>(way.where).port, 8089);
+    EXPECT_EQ(port_name(*url), "192.168.11.2");
 }
 
 TEST(ParseLidarUrl, ReadsAVirtualLidar) {
@@ -27,20 +39,100 @@ TEST(ParseLidarUrl, ReadsAVirtualLidar) {
     EXPECT_EQ(port_name(*url), "virtual-a1m8");
 }
 
+TEST(ParseLidarUrl, AsksForNothingUnlessTold) {
+    const auto url = parse_lidar_url("/dev/ttyUSB0");
+    ASSERT_TRUE(url);
+    EXPECT_EQ(url->name, "");
+    EXPECT_EQ(url->mode, "");
+    EXPECT_FALSE(url->hz);
+}
+
+class AnyLidarUrlTest : public testing::TestWithParam<const char*> {};
+
+TEST_P(AnyLidarUrlTest, TakesNameModeAndSpeed) {
+    const auto text = std::string(GetParam()) + "?name=left.1_b-2&mode=Boost&hz=7.5";
+    const auto url = parse_lidar_url(text);
+    ASSERT_TRUE(url) << url.error().cause;
+    EXPECT_EQ(url->name, "left.1_b-2");
+    EXPECT_EQ(url->mode, "Boost");
+    EXPECT_EQ(url->hz, 7.5);
+    EXPECT_EQ(url->text, text);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds,
+    AnyLidarUrlTest,
+    testing::Values(
+        "/dev/ttyUSB0",
+        "serial:/dev/ttyUSB0",
+        "tcp://robot",
+        "udp://robot:1",
+        "virtual:s2"
+    )
+);
+
 class BadLidarUrlTest : public testing::TestWithParam<const char*> {};
 
 TEST_P(BadLidarUrlTest, IsRefusedWithExamples) {
     const auto url = parse_lidar_url(GetParam());
     ASSERT_FALSE(url);
-    EXPECT_NE(url.error().cause.find(GetParam()), std::string::npos);
-    EXPECT_NE(url.error().hint.find("virtual:a1m8"), std::string::npos);
+    EXPECT_THAT(url.error().cause, HasSubstr(GetParam()));
+    EXPECT_THAT(url.error().hint, HasSubstr("virtual:a1m8"));
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Texts,
     BadLidarUrlTest,
-    testing::Values("", "virtual:", "virtual:a1m8?wurld=x", "usb://1", "virtual:a1m8?world=%zz")
+    testing::Values(
+        "",
+        "virtual:",
+        "virtual:a1m8?wurld=x",
+        "usb://1",
+        "virtual:a1m8?world=%zz",
+        "/dev/ttyUSB0?world=x",
+        "virtual:a1m8?baud=115200"
+    )
 );
+
+class BadParameterTest : public testing::TestWithParam<const char*> {};
+
+TEST_P(BadParameterTest, IsRefusedAndQuoted) {
+    const auto text = std::string("/dev/ttyUSB0?") + GetParam();
+    const auto url = parse_lidar_url(text);
+    ASSERT_FALSE(url);
+    EXPECT_THAT(url.error().cause, HasSubstr(text));
+    EXPECT_FALSE(url.error().hint.empty());
+}
+
+const std::string too_long = "name=" + std::string(65, 'x');
+
+INSTANTIATE_TEST_SUITE_P(
+    Texts,
+    BadParameterTest,
+    testing::Values(
+        "name=",
+        "name=two%20words",
+        "name=a/b",
+        "name=%00",
+        too_long.c_str(),
+        "mode=",
+        "hz=",
+        "hz=fast",
+        "hz=0.9",
+        "hz=30.1",
+        "hz=-7",
+        "hz=nan",
+        "hz=inf",
+        "hz=7Hz"
+    )
+);
+
+TEST(ParseLidarUrl, TakesANameOfSixtyFourCharacters) {
+    const std::string name(64, 'x');
+    const auto url = parse_lidar_url("/dev/ttyUSB0?name=" + name);
+    ASSERT_TRUE(url);
+    EXPECT_EQ(url->name, name);
+}
 
 }  // namespace
 }  // namespace sweepcast::gateway
