@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 namespace sweepcast::protocol {
@@ -49,6 +50,9 @@ constexpr void store_start_word(std::span<std::uint8_t, 2> word, bool restart, A
 inline constexpr std::int32_t turn_q6 = 360 << 6;
 inline constexpr std::int32_t turn_q8 = 360 << 8;
 inline constexpr std::int32_t turn_q16 = 360 << 16;
+
+/// A limit for such a turn that none exceeds.
+inline constexpr std::int32_t any_turn = std::numeric_limits<std::int32_t>::max();
 
 /// How far the scanner turned from one start angle to the next, in 1/256 degree; negative only if
 /// `from` is beyond a whole turn. Source: protocol.md 7.2.

@@ -12,10 +12,13 @@ Result<Decoder> Decoder::create(AnswerType type, const DecodeSettings& settings)
     case AnswerType::express:
         return Decoder{ExpressDecoder{settings}};
     case AnswerType::hq:
+        return Decoder{HqDecoder{settings}};
     case AnswerType::ultra:
+        return Decoder{UltraDecoder{settings}};
     case AnswerType::dense:
+        return Decoder{DenseDecoder{settings}};
     case AnswerType::ultra_dense:
-        break;
+        return Decoder{UltraDenseDecoder{settings}};
     }
     return make_error_code(errc::unsupported_answer_type);
 }

@@ -3,8 +3,12 @@
 #pragma once
 
 #include "driver/protocol/answer_type.hpp"
+#include "driver/protocol/decode_dense.hpp"
 #include "driver/protocol/decode_express.hpp"
+#include "driver/protocol/decode_hq.hpp"
 #include "driver/protocol/decode_normal.hpp"
+#include "driver/protocol/decode_ultra.hpp"
+#include "driver/protocol/decode_ultra_dense.hpp"
 #include "driver/protocol/decoded.hpp"
 #include "driver/protocol/result.hpp"
 
@@ -27,7 +31,13 @@ public:
     void push(std::span<const std::uint8_t> bytes, const Arrival& arrival, Decoded& out);
 
 private:
-    using State = std::variant<NormalDecoder, ExpressDecoder>;
+    using State = std::variant<
+        NormalDecoder,
+        ExpressDecoder,
+        HqDecoder,
+        UltraDecoder,
+        DenseDecoder,
+        UltraDenseDecoder>;
     explicit Decoder(State state) : state_(std::move(state)) {}
     State state_;
 };

@@ -35,6 +35,9 @@ enum class DecodeEventKind : std::uint8_t {
     encoder_reset,   ///< a restart came while a capsule was held: that capsule is lost
     scan_reset,     ///< the device restarted its angle reference: the unfinished revolution is void
     bytes_skipped,  ///< `count` bytes belonged to no packet
+    /// Besides those with a checksum error, `count` packets that the scanner sent never came, by
+    /// how far it had turned meanwhile. Known for capsules at a steady speed only.
+    packets_lost,
 };
 
 /// Something that happened between samples.

@@ -16,11 +16,14 @@ struct LineLosses {
     /// Samples of a revolution that was given up: the one under way at a restart of the angle
     /// reference, or one that grew beyond any plausible size.
     std::uint64_t discarded_samples{};
+    /// Packets that never came, as far as the angles tell (DecodeEventKind::packets_lost).
+    std::uint64_t lost_packets{};
 
     LineLosses& operator+=(const LineLosses& other) {
         checksum_errors += other.checksum_errors;
         skipped_bytes += other.skipped_bytes;
         discarded_samples += other.discarded_samples;
+        lost_packets += other.lost_packets;
         return *this;
     }
     bool operator==(const LineLosses&) const = default;

@@ -59,6 +59,9 @@ void SweepAssembler::apply(const DecodeEvent& event) {
     case DecodeEventKind::bytes_skipped:
         losses_.skipped_bytes += event.count;
         break;
+    case DecodeEventKind::packets_lost:
+        losses_.lost_packets += event.count;
+        break;
     case DecodeEventKind::encoder_reset:
         break;  // a scan_reset follows
     case DecodeEventKind::scan_reset:

@@ -154,7 +154,11 @@ Result<DecodedScan> from_columns(const v1::Scan& scan) {
         return read.error();
     }
     decoded.sweep.period = std::chrono::microseconds(scan.period_us());
-    decoded.sweep.losses = {scan.checksum_errors(), scan.skipped_bytes(), scan.discarded_samples()};
+    decoded.sweep.losses = {
+        scan.checksum_errors(),
+        scan.skipped_bytes(),
+        scan.discarded_samples(),
+        scan.lost_packets()};
     decoded.mode = scan.mode();
     decoded.answer_type = type;
     decoded.sample_period = std::chrono::microseconds(scan.sample_period_us());

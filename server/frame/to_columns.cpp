@@ -187,6 +187,7 @@ void to_columns(const device::CapturedSweep& captured, v1::Scan& scan) {
     scan.set_checksum_errors(captured.sweep.losses.checksum_errors);
     scan.set_skipped_bytes(captured.sweep.losses.skipped_bytes);
     scan.set_discarded_samples(captured.sweep.losses.discarded_samples);
+    scan.set_lost_packets(captured.sweep.losses.lost_packets);
 }
 
 }  // namespace sweepcast::frame

@@ -53,4 +53,15 @@ inline std::vector<Sample> without_times(std::vector<Sample> samples) {
     return samples;
 }
 
+/// The vendor's samples as ours should be: a distance of 2^31 or more, a negative one wrapped, is
+/// no echo.
+inline std::vector<Sample> without_nonsense(std::vector<Sample> samples) {
+    for (auto& sample : samples) {
+        if ((sample.distance.raw & 0x80000000U) != 0) {
+            sample.distance = {};
+        }
+    }
+    return samples;
+}
+
 }  // namespace sweepcast::protocol

@@ -30,7 +30,7 @@ protected:
 
 TEST_P(GoldenTest, GivesTheVendorsSamplesAndEvents) {
     const auto decoded = decode_whole(vector_.type, vector_.bytes, vector_.settings);
-    EXPECT_EQ(without_times(decoded.samples), vector_.expected.samples);
+    EXPECT_EQ(without_times(decoded.samples), without_nonsense(vector_.expected.samples));
     EXPECT_EQ(decoded.events, vector_.expected.events);
 }
 
@@ -58,9 +58,27 @@ TEST_P(AnyVectorTest, DecodesCutAnywhereAsWhole) {
     }
 }
 
+/// The vendor's times, corrected where they are not those of the packet that held the sample
+/// (protocol.md 8): those of dense types are one packet late, one packet being handed over at a
+/// time; those of HQ are the last sample's for all.
+std::vector<SampleTime> corrected_times(const test::Vector& vector) {
+    const auto& timing = vector.timing.value();
+    auto times = timing.sample_times;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        if (vector.type == AnswerType::dense || vector.type == AnswerType::ultra_dense) {
+            times[i] -= timing.between_chunks;
+        }
+        if (vector.type == AnswerType::hq) {
+            const auto samples_later = static_cast<int>(95 - i % 96);
+            times[i] -= samples_later * vector.settings.sample_duration;
+        }
+    }
+    return times;
+}
+
 class GoldenTimingTest : public GoldenTest {};
 
-TEST_P(GoldenTimingTest, GivesTheVendorsTimes) {
+TEST_P(GoldenTimingTest, GivesTheVendorsTimesForThePacketThatHeldTheSample) {
     const auto& timing = vector_.timing.value();
     auto decoder = make_decoder(vector_.type, timing.settings);
     Decoded decoded;
@@ -75,7 +93,8 @@ TEST_P(GoldenTimingTest, GivesTheVendorsTimes) {
     for (const auto& sample : decoded.samples) {
         times.push_back(sample.time);
     }
-    EXPECT_EQ(times, timing.sample_times);
+    EXPECT_EQ(timing.chunk_bytes % packet_size(vector_.type), 0U);
+    EXPECT_EQ(times, corrected_times(vector_));
 }
 
 constexpr auto name_of = [](const auto& tested) { return "v" + tested.param; };
@@ -84,15 +103,36 @@ INSTANTIATE_TEST_SUITE_P(
     Clean,
     GoldenTest,
     testing::Values(
-        "81_room",
         "81_extremes",
+        "81_room",
         "81_speed",
         "81_timing",
-        "82_room",
-        "82_extremes",
-        "82_speed",
         "82_border",
-        "82_timing"
+        "82_extremes",
+        "82_room",
+        "82_speed",
+        "82_timing",
+        "83_extremes",
+        "83_room",
+        "83_speed",
+        "83_timing",
+        "84_bands",
+        "84_border",
+        "84_extremes",
+        "84_room",
+        "84_speed",
+        "84_timing",
+        "85_border",
+        "85_extremes",
+        "85_room",
+        "85_speed",
+        "85_timing",
+        "86_bands",
+        "86_border",
+        "86_extremes",
+        "86_room",
+        "86_speed",
+        "86_timing"
     ),
     name_of
 );
@@ -100,26 +140,55 @@ INSTANTIATE_TEST_SUITE_P(
     All,
     AnyVectorTest,
     testing::Values(
-        "81_room",
+        "81_damage",
         "81_extremes",
+        "81_fuzz",
+        "81_room",
         "81_speed",
         "81_timing",
-        "81_damage",
-        "81_fuzz",
-        "82_room",
-        "82_extremes",
-        "82_speed",
         "82_border",
-        "82_timing",
         "82_damage",
-        "82_fuzz"
+        "82_extremes",
+        "82_fuzz",
+        "82_room",
+        "82_speed",
+        "82_timing",
+        "83_damage",
+        "83_extremes",
+        "83_fuzz",
+        "83_room",
+        "83_speed",
+        "83_timing",
+        "84_bands",
+        "84_border",
+        "84_damage",
+        "84_extremes",
+        "84_fuzz",
+        "84_room",
+        "84_speed",
+        "84_timing",
+        "85_border",
+        "85_damage",
+        "85_extremes",
+        "85_fuzz",
+        "85_room",
+        "85_speed",
+        "85_timing",
+        "86_bands",
+        "86_border",
+        "86_damage",
+        "86_extremes",
+        "86_fuzz",
+        "86_room",
+        "86_speed",
+        "86_timing"
     ),
     name_of
 );
 INSTANTIATE_TEST_SUITE_P(
     Timed,
     GoldenTimingTest,
-    testing::Values("81_timing", "82_timing"),
+    testing::Values("81_timing", "82_timing", "83_timing", "84_timing", "85_timing", "86_timing"),
     name_of
 );
 

@@ -107,8 +107,8 @@ TEST(ProtocolErrorTest, EachSaysSomethingOfItsOwn) {
     );
 }
 
-TEST(DecoderTest, RefusesStreamsItCannotDecode) {
-    for (const int type : {0x83, 0x84, 0x85, 0x86, 0x00, 0x80, 0x87, 0xFF}) {
+TEST(DecoderTest, RefusesWhatIsNoMeasurementStream) {
+    for (const int type : {0x00, 0x04, 0x80, 0x87, 0xFF}) {
         const auto decoder = Decoder::create(static_cast<AnswerType>(type), {});
         EXPECT_EQ(decoder.error(), errc::unsupported_answer_type) << type;
     }

@@ -141,7 +141,7 @@ TEST(ScanColumns, TellNoWallClockTimeThatCannotBe) {
 TEST(ScanColumns, KeepWhatIsKnownOfTheSweep) {
     auto captured = sweep_of({sample(0, 4, 1000)});
     captured.sweep.period = 100ms;
-    captured.sweep.losses = {1, 2, 3};
+    captured.sweep.losses = {1, 2, 3, 4};
     captured.mode = "Boost";
     captured.answer_type = protocol::AnswerType::ultra;
     captured.monotonic_to_unix = 5s;
