@@ -48,6 +48,14 @@ Result<std::uint32_t> set_raw_8n1(int fd, std::uint32_t baud) {
     return line.c_ospeed;
 }
 
+Result<std::uint32_t> line_speed(int fd) {
+    termios2 line{};
+    if (::ioctl(fd, TCGETS2, &line) != 0) {
+        return last_system_error();
+    }
+    return line.c_ospeed;
+}
+
 void ask_for_low_latency(int fd) {
     serial_struct settings{};
     if (::ioctl(fd, TIOCGSERIAL, &settings) == 0) {

@@ -14,6 +14,10 @@ namespace sweepcast::link {
 /// EINVAL for speeds of 0, which would hang up the line.
 Result<std::uint32_t> set_raw_8n1(int fd, std::uint32_t baud);
 
+/// The speed at which the terminal `fd` sends, in bits per second; asked at the master's end of a
+/// pseudo terminal, the one that its other end is set to. Errors: as set_raw_8n1().
+Result<std::uint32_t> line_speed(int fd);
+
 /// Whether a UART running at `actual` understands one at `asked`: within 3 %, since a byte of ten
 /// bits is sampled in the middle of each bit and both ends share the error.
 constexpr bool close_enough(std::uint32_t asked, std::uint32_t actual) {

@@ -1,11 +1,14 @@
 #include "driver/virtual/pty.hpp"
 
+#include "driver/link/termios2.hpp"
 #include "driver/virtual/error.hpp"
 
 #include <boost/asio/use_awaitable.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
@@ -31,8 +34,8 @@ Problem unavailable(const std::string& what, int failure) {
 // The host's end, open for as long as this lives.
 class HostEnd {
 public:
-    explicit HostEnd(const std::string& port)
-        : descriptor_(::open(port.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {}
+    explicit HostEnd(const std::string& path)
+        : descriptor_(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {}
     HostEnd(const HostEnd&) = delete;
     HostEnd& operator=(const HostEnd&) = delete;
     ~HostEnd() {
@@ -41,14 +44,9 @@ public:
         }
     }
 
-    // Raw, and with nothing left in it. False, with errno, if that cannot be had.
-    [[nodiscard]] bool make_fresh() const {
-        termios settings{};
-        if (descriptor_ < 0 || ::tcgetattr(descriptor_, &settings) != 0) {
-            return false;
-        }
-        ::cfmakeraw(&settings);
-        return ::tcsetattr(descriptor_, TCSANOW, &settings) == 0 &&
+    // Raw, at this speed, and with nothing left in it. False, with errno, if that cannot be had.
+    [[nodiscard]] bool make_fresh(std::uint32_t baud) const {
+        return descriptor_ >= 0 && link::set_raw_8n1(descriptor_, baud) &&
                ::tcflush(descriptor_, TCIOFLUSH) == 0;
     }
 
@@ -58,11 +56,13 @@ private:
 
 }  // namespace
 
-Pty::Pty(asio::posix::stream_descriptor descriptor, std::string port)
+Pty::Pty(asio::posix::stream_descriptor descriptor, std::string path)
     : descriptor_(std::move(descriptor))
-    , port_(std::move(port)) {}
+    , next_look_(descriptor_.get_executor())
+    , path_(std::move(path)) {}
 
-Result<Pty, Problem> Pty::open(const asio::any_io_executor& executor) {
+Result<std::unique_ptr<Pty>, Problem>
+Pty::open(const asio::any_io_executor& executor, std::uint32_t baud) {
     const int master = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     if (master < 0) {
         return unavailable("posix_openpt", errno);
@@ -75,23 +75,23 @@ Result<Pty, Problem> Pty::open(const asio::any_io_executor& executor) {
     if (const int failure = ::ptsname_r(master, name.data(), name.size()); failure != 0) {
         return unavailable("ptsname", failure);
     }
-    const std::string port(name.data());
-    if (::chmod(port.c_str(), S_IRUSR | S_IWUSR) != 0 || !HostEnd(port).make_fresh()) {
-        return unavailable(port, errno);
+    const std::string path(name.data());
+    if (::chmod(path.c_str(), S_IRUSR | S_IWUSR) != 0 || !HostEnd(path).make_fresh(baud)) {
+        return unavailable(path, errno);
     }
-    return Pty(std::move(descriptor), port);
+    return std::unique_ptr<Pty>(new Pty(std::move(descriptor), path));
 }
 
-Pty::Received Pty::read_some(std::span<std::uint8_t> into) {
+HostPort::Received Pty::read_some(std::span<std::uint8_t> into) {
     ssize_t count = -1;
     do {
         count = ::read(descriptor_.native_handle(), into.data(), into.size());
     } while (count < 0 && errno == EINTR);
-    if (count >= 0) {
-        return {.bytes = static_cast<std::size_t>(count), .host_present = count > 0};
-    }
     // EIO says that nobody has the other end open, and that all it had written has been read.
-    return {.bytes = 0, .host_present = errno == EAGAIN};
+    host_present_ = count > 0 || (count < 0 && errno == EAGAIN);
+    return {
+        .bytes = static_cast<std::size_t>(std::max<ssize_t>(count, 0)),
+        .host_present = host_present_};
 }
 
 std::size_t Pty::write_some(std::span<const std::uint8_t> bytes) {
@@ -108,14 +108,30 @@ std::size_t Pty::write_some(std::span<const std::uint8_t> bytes) {
     return written;
 }
 
-asio::awaitable<void> Pty::readable() {
-    co_await descriptor_.async_wait(asio::posix::stream_descriptor::wait_read, asio::use_awaitable);
+asio::awaitable<void> Pty::news() {
+    // Nothing announces that a host has opened the port, so this is looked for.
+    constexpr auto look_period = std::chrono::milliseconds(20);
+    if (host_present_) {
+        co_await descriptor_.async_wait(
+            asio::posix::stream_descriptor::wait_read,
+            asio::use_awaitable
+        );
+    } else {
+        next_look_.expires_after(look_period);
+        co_await next_look_.async_wait(asio::use_awaitable);
+    }
 }
 
-void Pty::clean_up_after_host() {
+void Pty::clean_up_after_host(std::uint32_t baud) {
     // Nothing depends on it: at worst the next host finds stale bytes, as after any open of a real
     // port.
-    (void)HostEnd(port_).make_fresh();
+    (void)HostEnd(path_).make_fresh(baud);
+}
+
+std::uint32_t Pty::host_baud() const {
+    // Asked at our end, the system tells of the other.
+    const auto baud = link::line_speed(descriptor_.native_handle());
+    return baud ? *baud : 0;
 }
 
 }  // namespace sweepcast::virtual_lidar

@@ -1,5 +1,7 @@
 #include "driver/virtual/uart.hpp"
 
+#include "driver/link/termios2.hpp"
+
 #include <cstddef>
 
 namespace sweepcast::virtual_lidar {
@@ -49,11 +51,7 @@ private:
 }  // namespace
 
 bool speeds_fit(std::uint32_t sent_baud, std::uint32_t heard_baud) {
-    constexpr std::int64_t per_cent = 3;
-    const auto difference = std::int64_t{sent_baud} - std::int64_t{heard_baud};
-    const auto allowed = std::int64_t{sent_baud} * per_cent;
-    return sent_baud == 0 || heard_baud == 0 ||
-           (difference < 0 ? -difference : difference) * 100 <= allowed;
+    return sent_baud == 0 || heard_baud == 0 || link::close_enough(sent_baud, heard_baud);
 }
 
 std::vector<std::uint8_t>

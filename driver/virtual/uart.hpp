@@ -7,8 +7,8 @@
 
 namespace sweepcast::virtual_lidar {
 
-/// Whether a UART can read what is sent at a speed that is off by so little: 3 %, as adapters round
-/// what they are asked for. 0 stands for a line that has no speed, which fits any.
+/// Whether a UART can read what is sent at a speed that is off by so little. 0 stands for a line
+/// that has no speed, which fits any.
 [[nodiscard]] bool speeds_fit(std::uint32_t sent_baud, std::uint32_t heard_baud);
 
 /// The bytes that a receiver at `heard_baud` gets when `bytes` are sent back to back at

@@ -2,6 +2,10 @@
 
 #include "driver/async/task_group.hpp"
 #include "driver/virtual/error.hpp"
+#include "driver/virtual/pty.hpp"
+#include "driver/virtual/tcp_port.hpp"
+#include "driver/virtual/uart.hpp"
+#include "driver/virtual/udp_port.hpp"
 
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/this_coro.hpp>
@@ -22,9 +26,6 @@ namespace {
 // Measurements are written in pieces of this time: less than the buffering of any real USB adapter,
 // and coarse enough to cost no more than a few percent of a core.
 constexpr auto shortest_step = 2ms;
-
-// Nothing announces that a host has opened the port, so this is looked for.
-constexpr auto host_poll_period = 20ms;
 
 constexpr auto report_period = 1s;
 
@@ -59,6 +60,12 @@ std::optional<Problem> check(const VirtualLidarOptions& options) {
     if (!(options.dropout >= 0.0 && options.dropout <= 1.0)) {
         return invalid("the dropout is not in 0..1", "give a fraction such as 0.05");
     }
+    if (!options.link.empty() && !options.listen.empty()) {
+        return invalid(
+            "only a pseudo terminal can have a link",
+            "leave out the link or the address"
+        );
+    }
     return std::nullopt;
 }
 
@@ -81,17 +88,59 @@ Result<std::shared_ptr<const World>, Problem> world_of(const VirtualLidarOptions
     return std::make_shared<const World>(std::move(*loaded));
 }
 
+Result<Faults, Problem> faults_of(const VirtualLidarOptions& options) {
+    Faults faults;
+    for (const auto& text : options.faults) {
+        if (auto added = add_fault(faults, text); !added) {
+            return std::move(added).error();
+        }
+    }
+    return faults;
+}
+
+template <class Port>
+Result<std::unique_ptr<HostPort>, Problem> as_host_port(Result<std::unique_ptr<Port>, Problem> port
+) {
+    if (!port) {
+        return std::move(port).error();
+    }
+    return std::unique_ptr<HostPort>(std::move(*port));
+}
+
+Result<std::unique_ptr<HostPort>, Problem> open_port(
+    const asio::any_io_executor& executor,
+    const VirtualLidarOptions& options,
+    const Persona& persona
+) {
+    if (options.listen.empty()) {
+        return as_host_port(Pty::open(executor, persona.baud));
+    }
+    const auto address = parse_listen_address(options.listen, persona.connection);
+    if (!address) {
+        return address.error();
+    }
+    return address->transport == Transport::tcp ? as_host_port(TcpPort::listen(executor, *address))
+                                                : as_host_port(UdpPort::listen(executor, *address));
+}
+
+// Behind a serial bridge a scanner does not know of the network.
+bool on_ethernet(const VirtualLidarOptions& options, const Persona& persona) {
+    return persona.connection == Connection::ethernet && !options.listen.empty();
+}
+
 }  // namespace
 
 struct VirtualLidar::Parts {
     std::shared_ptr<spdlog::logger> logger;
     asio::any_io_executor executor;
-    Pty pty;
+    std::unique_ptr<HostPort> port;
+    bool any_baud;
     std::optional<PortLink> link;
     std::optional<Recording> recording;
     const Persona* persona;
     SerialNumber serial;
     Beam beam;
+    EmulatorSettings settings;
 };
 
 Result<std::unique_ptr<VirtualLidar>, Problem> VirtualLidar::create(
@@ -106,11 +155,15 @@ Result<std::unique_ptr<VirtualLidar>, Problem> VirtualLidar::create(
     if (!world) {
         return std::move(world).error();
     }
-    auto pty = Pty::open(executor);
-    if (!pty) {
-        return std::move(pty).error();
+    auto faults = faults_of(options);
+    if (!faults) {
+        return std::move(faults).error();
     }
     const auto* const persona = find_persona(options.model);
+    auto port = open_port(executor, options, *persona);
+    if (!port) {
+        return std::move(port).error();
+    }
     const BeamSettings beam{
         .noise_mm = options.noise_mm,
         .dropout = options.dropout,
@@ -118,12 +171,17 @@ Result<std::unique_ptr<VirtualLidar>, Problem> VirtualLidar::create(
     Parts parts{
         .logger = std::move(logger),
         .executor = executor,
-        .pty = std::move(*pty),
+        .port = std::move(*port),
+        .any_baud = options.any_baud,
         .link = {},
         .recording = {},
         .persona = persona,
         .serial = serial_of(options),
         .beam = Beam(std::move(*world), persona->beam, beam),
+        .settings =
+            {.faults = *faults,
+             .seed = options.seed,
+             .on_ethernet = on_ethernet(options, *persona)},
     };
     if (!options.recording.empty()) {
         auto recording = Recording::create(options.recording);
@@ -133,7 +191,7 @@ Result<std::unique_ptr<VirtualLidar>, Problem> VirtualLidar::create(
         parts.recording = std::move(*recording);
     }
     if (!options.link.empty()) {
-        auto link = PortLink::create(options.link, parts.pty.port());
+        auto link = PortLink::create(options.link, parts.port->address());
         if (!link) {
             return std::move(link).error();
         }
@@ -145,7 +203,8 @@ Result<std::unique_ptr<VirtualLidar>, Problem> VirtualLidar::create(
 VirtualLidar::VirtualLidar(Parts&& parts)
     : logger_(std::move(parts.logger))
     , executor_(parts.executor)
-    , pty_(std::move(parts.pty))
+    , port_(std::move(parts.port))
+    , any_baud_(parts.any_baud)
     , link_(std::move(parts.link))
     , recording_(std::move(parts.recording))
     , persona_(parts.persona)
@@ -154,7 +213,8 @@ VirtualLidar::VirtualLidar(Parts&& parts)
           parts.serial,
           std::move(parts.beam),
           now(),
-          [this](const Event& event) { log_event(event); }
+          [this](const Event& event) { log_event(event); },
+          parts.settings
       )
     , next_step_(executor_)
     , line_time_(executor_)
@@ -199,26 +259,23 @@ void VirtualLidar::stop() {
 }
 
 asio::awaitable<void> VirtualLidar::read_host() {
-    const auto byte_time = std::chrono::nanoseconds(10s) / persona_->baud;
-    std::array<std::uint8_t, 256> buffer{};
+    std::array<std::uint8_t, 2048> buffer{};
     while (true) {
-        const auto received = pty_.read_some(buffer);
+        const auto received = port_->read_some(buffer);
         note_host(received.host_present);
-        if (received.bytes > 0) {
-            // The line takes its time in this direction too; this also bounds what a host that
-            // writes without end can cost.
-            line_time_.expires_after(byte_time * static_cast<std::int64_t>(received.bytes));
-            co_await line_time_.async_wait(asio::use_awaitable);
-            const auto moment = now();
-            live_until(moment);
-            emulator_.receive(std::span(buffer).first(received.bytes), moment);
-            next_step_.cancel();  // what is due next may have changed
-        } else if (received.host_present) {
-            co_await pty_.readable();
-        } else {
-            line_time_.expires_after(host_poll_period);
-            co_await line_time_.async_wait(asio::use_awaitable);
+        if (received.bytes == 0) {
+            co_await port_->news();
+            continue;
         }
+        // The line takes its time in this direction too; this also bounds what a host that writes
+        // without end can cost.
+        const auto byte_time = std::chrono::nanoseconds(10s) / emulator_.baud();
+        line_time_.expires_after(byte_time * static_cast<std::int64_t>(received.bytes));
+        co_await line_time_.async_wait(asio::use_awaitable);
+        const auto moment = now();
+        live_until(moment);
+        emulator_.receive(std::span(buffer).first(received.bytes), moment, host_baud());
+        next_step_.cancel();  // what is due next may have changed
     }
 }
 
@@ -241,7 +298,7 @@ void VirtualLidar::note_host(bool present) {
     host_present_ = present;
     logger_->info("{} {}", port(), present ? "opened by a host" : "closed by the host");
     if (!present) {
-        pty_.clean_up_after_host();
+        port_->clean_up_after_host(emulator_.baud());
     }
 }
 
@@ -259,14 +316,23 @@ void VirtualLidar::deliver(const Transmitted& transmitted) {
     if (!host_present_) {
         return;
     }
-    const std::span bytes(transmitted.bytes);
-    const auto written = pty_.write_some(bytes);
-    lost_bytes_ += bytes.size() - written;
+    const std::span sent(transmitted.bytes);
+    const auto at = host_baud();
+    if (!speeds_fit(emulator_.baud(), at)) {
+        (void)port_->write_some(heard(sent, emulator_.baud(), at));
+        return;
+    }
+    const auto written = port_->write_some(sent);
+    lost_bytes_ += sent.size() - written;
     if (recording_ && transmitted.payload == Payload::measurement &&
-        !recording_->append(bytes.first(written))) {
+        !recording_->append(sent.first(written))) {
         logger_->error("the recording ends here: it cannot be written any more");
         recording_.reset();
     }
+}
+
+std::uint32_t VirtualLidar::host_baud() const {
+    return any_baud_ ? 0 : port_->host_baud();
 }
 
 void VirtualLidar::report_losses(Moment moment) {

@@ -1,11 +1,11 @@
-// VirtualLidar: a scanner on a pseudo terminal, for those who have none. Joins the emulator to time
-// and a port.
+// VirtualLidar: a scanner on a pseudo terminal or a network, for those who have none. Joins the
+// emulator to time and a port.
 #pragma once
 
 #include "driver/protocol/result.hpp"
 #include "driver/virtual/emulator.hpp"
+#include "driver/virtual/host_port.hpp"
 #include "driver/virtual/port_link.hpp"
-#include "driver/virtual/pty.hpp"
 #include "driver/virtual/recording.hpp"
 
 #include <boost/asio/any_io_executor.hpp>
@@ -25,14 +25,17 @@ namespace sweepcast::virtual_lidar {
 
 /// What a user can choose. Empty texts: not asked for.
 struct VirtualLidarOptions {
-    std::string model{"a1m8"};         ///< key of a persona
-    std::string link{};                ///< path of a symbolic link to the port
-    std::string world{};               ///< file of points; empty: the built-in living room
-    std::string serial{};              ///< 32 hex digits; empty: derived from model, link and seed
-    std::string recording{};           ///< file for the measurement bytes sent (see Recording)
-    std::optional<double> noise_mm{};  ///< standard deviation of distances; unset: the persona's
-    double dropout{};                  ///< part of measurements without an echo, 0..1
-    std::uint64_t seed{1};             ///< of noise and dropouts
+    std::string model{"a1m8"};          ///< key of a persona
+    std::string listen{};               ///< see parse_listen_address(); empty: a pseudo terminal
+    std::string link{};                 ///< path of a symbolic link to the pseudo terminal
+    bool any_baud{};                    ///< whatever speed a host sets, it is understood
+    std::vector<std::string> faults{};  ///< see add_fault()
+    std::string world{};                ///< file of points; empty: the built-in living room
+    std::string serial{};               ///< 32 hex digits; empty: derived from model, link and seed
+    std::string recording{};            ///< file for the measurement bytes sent (see Recording)
+    std::optional<double> noise_mm{};   ///< standard deviation of distances; unset: the persona's
+    double dropout{};                   ///< part of measurements without an echo, 0..1
+    std::uint64_t seed{1};              ///< of noise, dropouts and damage on the line
 };
 
 /// A virtual lidar. It is used on the thread of its executor only.
@@ -50,8 +53,8 @@ public:
     VirtualLidar(const VirtualLidar&) = delete;
     VirtualLidar& operator=(const VirtualLidar&) = delete;
 
-    /// The path of the port, e.g. /dev/pts/5.
-    [[nodiscard]] const std::string& port() const { return pty_.port(); }
+    /// What a host opens: the path of the pseudo terminal, e.g. /dev/pts/5, or a URL.
+    [[nodiscard]] const std::string& port() const { return port_->address(); }
 
     /// Plays the scanner until stop() or cancellation; called once. The link is gone when it ends.
     /// Throws what made it impossible to go on.
@@ -69,12 +72,14 @@ private:
     void note_host(bool present);
     void live_until(Moment moment);
     void deliver(const Transmitted& transmitted);
+    [[nodiscard]] std::uint32_t host_baud() const;
     void report_losses(Moment moment);
     void log_event(const Event& event);
 
     std::shared_ptr<spdlog::logger> logger_;
     boost::asio::any_io_executor executor_;
-    Pty pty_;
+    std::unique_ptr<HostPort> port_;
+    bool any_baud_;
     std::optional<PortLink> link_;
     std::optional<Recording> recording_;
     const Persona* persona_;

@@ -17,20 +17,20 @@ namespace {
 
 class PtyTest : public testing::Test {
 protected:
-    PtyTest() : pty_(*Pty::open(context_.get_executor())) {}
+    PtyTest() : pty_(std::move(*Pty::open(context_.get_executor(), 256'000))) {}
     ~PtyTest() override { close_host(); }
 
-    void open_host() { host_ = ::open(pty_.port().c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK); }
+    void open_host() { host_ = ::open(pty_->address().c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK); }
     void close_host() {
         if (host_ >= 0) {
             ::close(host_);
             host_ = -1;
         }
     }
-    Pty::Received read() { return pty_.read_some(buffer_); }
+    HostPort::Received read() { return pty_->read_some(buffer_); }
 
     boost::asio::io_context context_;
-    Pty pty_;
+    std::unique_ptr<Pty> pty_;
     int host_{-1};
     std::array<std::uint8_t, 256> buffer_{};
 };
@@ -60,7 +60,7 @@ TEST_F(PtyTest, PassesEveryByteAsItIs) {
     for (std::size_t i = 0; i < all.size(); ++i) {
         all[i] = static_cast<std::uint8_t>(i);
     }
-    EXPECT_EQ(pty_.write_some(all), all.size());
+    EXPECT_EQ(pty_->write_some(all), all.size());
     std::vector<std::uint8_t> received(300);
     ASSERT_EQ(::read(host_, received.data(), received.size()), 256);
     received.resize(256);
@@ -77,7 +77,7 @@ TEST_F(PtyTest, TakesOnlySoMuchForAHostThatDoesNotRead) {
     std::size_t taken = 0;
     std::size_t last = block.size();
     while (last == block.size() && taken < (16U << 20U)) {
-        last = pty_.write_some(block);
+        last = pty_->write_some(block);
         taken += last;
     }
     EXPECT_LT(last, block.size());
@@ -86,13 +86,13 @@ TEST_F(PtyTest, TakesOnlySoMuchForAHostThatDoesNotRead) {
 TEST_F(PtyTest, HasNothingLeftForTheNextHostAfterCleaningUp) {
     open_host();
     const std::vector<std::uint8_t> block(100);
-    ASSERT_EQ(pty_.write_some(block), block.size());
+    ASSERT_EQ(pty_->write_some(block), block.size());
     termios cooked{};
     ASSERT_EQ(::tcgetattr(host_, &cooked), 0);
     cooked.c_lflag |= static_cast<tcflag_t>(ECHO | ICANON);
     ASSERT_EQ(::tcsetattr(host_, TCSANOW, &cooked), 0);
     close_host();
-    pty_.clean_up_after_host();
+    pty_->clean_up_after_host(256'000);
     open_host();
     EXPECT_EQ(::read(host_, buffer_.data(), buffer_.size()), -1);
     EXPECT_EQ(errno, EAGAIN);
@@ -104,7 +104,7 @@ TEST_F(PtyTest, HasNothingLeftForTheNextHostAfterCleaningUp) {
 
 TEST_F(PtyTest, IsOpenToItsUserOnly) {
     struct stat status {};
-    ASSERT_EQ(::stat(pty_.port().c_str(), &status), 0);
+    ASSERT_EQ(::stat(pty_->address().c_str(), &status), 0);
     EXPECT_EQ(status.st_mode & 0777U, 0600U);
 }
 

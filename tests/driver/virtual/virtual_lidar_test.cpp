@@ -1,24 +1,13 @@
 // VirtualLidar: the whole, talked to through its port by a host of the test's own.
-#include "driver/virtual/virtual_lidar.hpp"
-
-#include "driver/async/task_group.hpp"
-#include "driver/protocol/request.hpp"
 #include "driver/virtual/error.hpp"
-#include "tests/driver/virtual/scratch_folder.hpp"
+#include "tests/driver/virtual/virtual_lidar_fixture.hpp"
 
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/posix/stream_descriptor.hpp>
-#include <boost/asio/read.hpp>
-#include <boost/asio/use_awaitable.hpp>
-#include <boost/asio/write.hpp>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <spdlog/sinks/ostream_sink.h>
 
-#include <fcntl.h>
-#include <functional>
+#include <array>
+#include <cmath>
+#include <fstream>
 #include <iterator>
-#include <sstream>
 #include <unistd.h>
 
 namespace sweepcast::virtual_lidar {
@@ -27,80 +16,11 @@ namespace {
 namespace asio = boost::asio;
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
-using protocol::Command;
 using testing::HasSubstr;
 using Bytes = std::vector<std::uint8_t>;
+using protocol::Command;
 
 const Bytes health_good{0xA5, 0x5A, 3, 0, 0, 0, 0x06, 0, 0, 0};
-
-class VirtualLidarTest : public testing::Test {
-protected:
-    VirtualLidarTest()
-        : tasks_(context_.get_executor(), [this](std::exception_ptr failure) {
-            failure_ = failure;
-            lidar_->stop();
-        }) {}
-
-    void create(const VirtualLidarOptions& options = {}) {
-        auto created = VirtualLidar::create(context_.get_executor(), options, logger_);
-        ASSERT_TRUE(created) << created.error().cause;
-        lidar_ = std::move(*created);
-    }
-
-    /// Runs the lidar and beside it `host`; when that has ended the lidar is stopped.
-    void run_with(std::function<asio::awaitable<void>()> host) {
-        tasks_.spawn(lidar_->run());
-        tasks_.spawn(host_then_stop(std::move(host)));
-        context_.run_for(10s);
-        ASSERT_EQ(tasks_.size(), 0U) << "did not end in time";
-        if (failure_) {
-            std::rethrow_exception(failure_);
-        }
-    }
-
-    asio::posix::stream_descriptor open_port() {
-        const int port = ::open(lidar_->port().c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK);
-        EXPECT_GE(port, 0);
-        return {context_, port};
-    }
-
-    static asio::awaitable<void> write(asio::posix::stream_descriptor& port, Command command) {
-        const auto request = protocol::encode({command, {}});
-        co_await asio::async_write(port, asio::buffer(request), asio::use_awaitable);
-    }
-
-    static asio::awaitable<Bytes> read(asio::posix::stream_descriptor& port, std::size_t size) {
-        Bytes bytes(size);
-        co_await asio::async_read(port, asio::buffer(bytes), asio::use_awaitable);
-        co_return bytes;
-    }
-
-    /// Waits, with the ceiling of run_with, until the log tells of something.
-    asio::awaitable<void> logged(std::string text) {
-        asio::steady_timer timer(context_);
-        while (log_.str().find(text) == std::string::npos) {
-            timer.expires_after(5ms);
-            co_await timer.async_wait(asio::use_awaitable);
-        }
-    }
-
-    asio::io_context context_;
-    std::ostringstream log_;
-    std::shared_ptr<spdlog::logger> logger_ = std::make_shared<spdlog::logger>(
-        "test",
-        std::make_shared<spdlog::sinks::ostream_sink_st>(log_)
-    );
-    ScratchFolder folder_;
-    std::unique_ptr<VirtualLidar> lidar_;
-    async::TaskGroup tasks_;
-    std::exception_ptr failure_;
-
-private:
-    asio::awaitable<void> host_then_stop(std::function<asio::awaitable<void>()> host) {
-        co_await host();
-        lidar_->stop();
-    }
-};
 
 TEST_F(VirtualLidarTest, AnswersOnItsPort) {
     create();
