@@ -1,6 +1,8 @@
 #include "server/cli/virtual_command.hpp"
 
 #include "driver/async/task_group.hpp"
+#include "driver/virtual/faults.hpp"
+#include "driver/virtual/persona.hpp"
 #include "driver/virtual/virtual_lidar.hpp"
 #include "server/cli/command.hpp"
 #include "server/log/log.hpp"
@@ -12,10 +14,14 @@
 #include <boost/asio/signal_set.hpp>
 #include <fmt/core.h>
 
+#include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <string>
+#include <string_view>
 #include <utility>
 
 namespace sweepcast::cli {
@@ -26,26 +32,89 @@ using virtual_lidar::VirtualLidarOptions;
 
 namespace {
 
-constexpr const char* description = "Play a lidar on a pseudo terminal, for those who have none";
+constexpr const char* description = "Play a lidar, for those who have none";
 
-constexpr const char* footer = R"(
-The first line on standard output is the path of the port, e.g. /dev/pts/5. Open it as you would open
-the serial port of a real scanner; any baud rate will do, data comes at the scanner's own. The log goes
-to standard error. Ctrl-C ends it.
+constexpr const char* footer_before_faults = R"(
+The first line on standard output is what to open: the path of a pseudo terminal such as /dev/pts/5, or
+with --listen a URL. Open it as you would open a real scanner. A pseudo terminal has a speed: whoever
+sets another than the scanner's gets garbage, as from a real one (--list-models shows the speeds).
+Whoever sets none gets the right one. The log goes to standard error. Ctrl-C ends it.
 
-The motor runs from the start, as that of a real A1 does. A pseudo terminal has no modem lines, so
-instead of DTR the request SET_MOTOR_PWM (0xF0) switches it: 0 is off, anything else is on. A real A1
-ignores that request.
+Motors behave as the model's: that of an A1 runs from the start and does not regulate its speed; A2 and
+A3 turn by SET_MOTOR_PWM (0xF0), each exemplar a little off; S and T by rpm (0xA8); a C1 spins by itself
+while it scans. In place of the modem line DTR of an A1, which is not to be had here, SET_MOTOR_PWM
+switches the motor: 0 is off, anything else is on. A real A1 ignores that request.
 
 A world is a CSV file with the header "angle_deg,distance_mm" and a point a line; angles are clockwise
 seen from above, from 0 up to 360. Without one you get a living room in which someone walks.
 
 A recording holds the raw bytes of the measurement packets that were sent, without the descriptors.
 
+Faults (--fault, as often as you like):
+)";
+
+constexpr const char* examples = R"(
 Examples:
   sweepcast virtual
-  sweepcast virtual --link /tmp/lidar --noise 5 --dropout 0.02
-  sweepcast virtual --world room.csv --noise 0 --seed 7)";
+  sweepcast virtual --list-models
+  sweepcast virtual --model a3m1 --link /tmp/lidar --noise 5 --dropout 0.02
+  sweepcast virtual --world room.csv --noise 0 --seed 7
+  sweepcast virtual --model t1 --listen udp://127.0.0.1:8089
+  sweepcast virtual --model s1 --listen tcp://127.0.0.1:20108
+  sweepcast virtual --model s2 --fault noise=0.001 --fault warning=0x8001)";
+
+std::string_view motor_of(const virtual_lidar::Persona& persona) {
+    switch (persona.motor.control) {
+    case protocol::MotorControl::modem_line:
+        return "DTR, on or off";
+    case protocol::MotorControl::accessory_board:
+        return "PWM";
+    case protocol::MotorControl::rpm:
+        return "rpm";
+    case protocol::MotorControl::self:
+        return "spins by itself";
+    }
+    return "";
+}
+
+std::string speed_of(const virtual_lidar::Persona& persona) {
+    return persona.connection == virtual_lidar::Connection::ethernet ? "UDP"
+                                                                     : std::to_string(persona.baud);
+}
+
+// Text written in a fixed width, a line for each scan mode.
+std::string table_of_models() {
+    std::string table = fmt::format(
+        "{:<9}  {:<28}  {:>7}  {:<16}  {}\n",
+        "model",
+        "name",
+        "baud",
+        "motor",
+        "scan modes (* typical): id, name, samples per second, range, answer type"
+    );
+    for (const auto& persona : virtual_lidar::personas()) {
+        auto key = persona.key;
+        for (std::size_t id = 0; id < persona.modes.size(); ++id) {
+            const auto& mode = persona.modes[id];
+            const std::chrono::duration<double> sample = mode.sample_duration();
+            table += fmt::format(
+                "{:<9}  {:<28}  {:>7}  {:<16}  {}{} {:<12} {:>6.0f}/s  {:>2} m  0x{:02X}\n",
+                key,
+                id == 0 ? persona.title : "",
+                id == 0 ? speed_of(persona) : "",
+                id == 0 ? motor_of(persona) : "",
+                id == persona.typical_mode ? '*' : ' ',
+                id,
+                mode.name,
+                1.0 / sample.count(),
+                mode.max_distance_q8_m / 256U,
+                static_cast<unsigned>(mode.answer)
+            );
+            key = "";
+        }
+    }
+    return table;
+}
 
 // Runs the lidar to its end, and lets nothing else keep the process alive after it.
 asio::awaitable<void> play(VirtualLidar& lidar, asio::signal_set& signals) {
@@ -87,10 +156,21 @@ int run(const VirtualLidarOptions& options) {
 void add_virtual_command(CLI::App& app, int& exit_code) {
     auto* const command = app.add_subcommand("virtual", description);
     const auto options = std::make_shared<VirtualLidarOptions>();
-    command->footer(footer);
-    command->add_option("--model", options->model, "Which scanner to play; a1m8 is the only one")
+    const auto list_models = std::make_shared<bool>(false);
+    command->footer(footer_before_faults + virtual_lidar::faults_help() + examples);
+    command->add_option("--model", options->model, "Which scanner to play; \"list\" lists them")
         ->capture_default_str();
+    command->add_flag("--list-models", *list_models, "List the scanners with their modes, and end");
+    command->add_option(
+        "--listen",
+        options->listen,
+        "Play it on the network: tcp://ADDRESS:PORT, udp://ADDRESS:PORT, or ADDRESS:PORT for what\n"
+        "the model has"
+    );
     command->add_option("--link", options->link, "Make a symbolic link to the port at this path");
+    command->add_flag("--any-baud", options->any_baud, "Understand hosts that set another speed");
+    command->add_option("--fault", options->faults, "Something that is wrong with it; see below")
+        ->allow_extra_args(false);
     command->add_option("--world", options->world, "What it sees: a CSV file of points");
     command->add_option(
         "--noise",
@@ -99,14 +179,22 @@ void add_virtual_command(CLI::App& app, int& exit_code) {
     );
     command->add_option("--dropout", options->dropout, "Part of measurements without an echo, 0..1")
         ->capture_default_str();
-    command->add_option("--seed", options->seed, "Of noise and dropouts")->capture_default_str();
+    command->add_option("--seed", options->seed, "Of noise, dropouts and faults")
+        ->capture_default_str();
     command->add_option(
         "--serial",
         options->serial,
         "Serial number, 32 hex digits (default: from model, link and seed)"
     );
     command->add_option("--record", options->recording, "File for the measurement bytes sent");
-    command->callback([options, &exit_code] { exit_code = run(*options); });
+    command->callback([options, list_models, &exit_code] {
+        if (*list_models || options->model == "list") {
+            fmt::print("{}", table_of_models());
+            exit_code = 0;
+        } else {
+            exit_code = run(*options);
+        }
+    });
 }
 
 }  // namespace sweepcast::cli

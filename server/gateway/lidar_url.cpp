@@ -37,10 +37,12 @@ Result<LidarUrl, Problem> parse_virtual(std::string_view text, Parameters& other
             "write virtual:a1m8, or virtual:a1m8?world=FILE"
         );
     }
-    VirtualLidarUrl lidar{url->path(), ""};
+    VirtualLidarUrl lidar{.model = url->path()};
     for (const auto& parameter : url->params()) {
         if (parameter.key == "world") {
             lidar.world = parameter.value;
+        } else if (parameter.key == "fault") {
+            lidar.faults.emplace_back(parameter.value);
         } else {
             others.push_back({std::string(parameter.key), std::string(parameter.value)});
         }
@@ -117,7 +119,8 @@ Result<void, Problem> apply(LidarUrl& url, const link::UrlParameter& parameter) 
         url.text,
         fmt::format("unknown parameter \"{}\"", link::printable(parameter.key)),
         "there are: name=ID, mode=NAME, hz=SPEED; for a serial port also baud=RATE, as in "
-        "/dev/ttyUSB0?baud=256000; for a virtual lidar world=FILE, as in virtual:a1m8?world=FILE"
+        "/dev/ttyUSB0?baud=256000; for a virtual lidar world=FILE and "
+        "fault=FAULT, as in virtual:a1m8?world=FILE"
     );
 }
 

@@ -8,13 +8,15 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 namespace sweepcast::gateway {
 
 /// A virtual lidar that the gateway starts itself, on a pseudo terminal of its own.
 struct VirtualLidarUrl {
-    std::string model;
-    std::string world;  ///< file; empty: the built-in room
+    std::string model{};
+    std::string world{};                ///< file; empty: the built-in room
+    std::vector<std::string> faults{};  ///< as `sweepcast virtual --fault` takes them
 };
 
 /// Rotations per second that may be asked for.

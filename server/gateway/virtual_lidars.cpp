@@ -17,6 +17,7 @@ Result<std::string, Problem> VirtualLidars::add(
     virtual_lidar::VirtualLidarOptions options;
     options.model = url.model;
     options.world = url.world;
+    options.faults = url.faults;
     options.seed = number;
     auto created =
         virtual_lidar::VirtualLidar::create(worker_->executor(), options, std::move(log));

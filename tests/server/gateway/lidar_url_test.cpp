@@ -39,6 +39,15 @@ TEST(ParseLidarUrl, ReadsAVirtualLidar) {
     EXPECT_EQ(port_name(*url), "virtual-a1m8");
 }
 
+TEST(ParseLidarUrl, ReadsTheFaultsOfAVirtualLidar) {
+    const auto url = parse_lidar_url("virtual:s2?fault=noise=0.01&fault=protection-stop=0x8001");
+    ASSERT_TRUE(url);
+    EXPECT_THAT(
+        std::get<VirtualLidarUrl>(url->where).faults,
+        testing::ElementsAre("noise=0.01", "protection-stop=0x8001")
+    );
+}
+
 TEST(ParseLidarUrl, AsksForNothingUnlessTold) {
     const auto url = parse_lidar_url("/dev/ttyUSB0");
     ASSERT_TRUE(url);
