@@ -22,7 +22,7 @@ public:
 
     const std::vector<std::uint8_t>& pack(const Stretch& stretch, Beam& beam) override {
         using std::chrono::microseconds;
-        const auto clock = std::chrono::duration_cast<microseconds>(stretch.start_time);
+        const auto clock = std::chrono::round<microseconds>(stretch.start_time);
         protocol::HqPacket packet{
             .time_stamp = static_cast<std::uint64_t>(clock.count()),
             .samples = {}};
