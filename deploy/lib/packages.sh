@@ -29,6 +29,7 @@ test_packages=(
     ccache                # a second run compiles only what changed
     libgtest-dev
     libgmock-dev
+    libbenchmark-dev
     clang                 # second compiler; reports dropped co_await results, which g++ 12 does not
     libclang-rt-14-dev    # clang's sanitizer runtimes
     llvm                  # llvm-symbolizer: names in sanitizer reports

@@ -3,6 +3,8 @@
 
 #include "driver/protocol/wire.hpp"
 
+#include <array>
+#include <cstddef>
 #include <cstdlib>
 
 namespace sweepcast::protocol {
@@ -11,26 +13,28 @@ template class CapsuleDecoder<UltraDenseFormat>;
 
 namespace {
 
-constexpr std::int32_t smoothed_within_q2 = 8;
+/// A scale as masks over the 20 bits of a sample: no shift depends on the scale.
+struct ScaleMasks {
+    std::uint32_t distance{};  ///< in its place, two bits up: quarters of steps
+    std::int32_t step_mm{};
+    std::int32_t first_q2{};
+    std::uint32_t quality{};            ///< of the highest 8 bits, those that are quality
+    std::int32_t smoothed_within_q2{};  ///< of the distance before
+};
 
-/// The distance in quarter millimetres that 20 bits say, averaged with the `last` one if it should
-/// be.
-std::int32_t distance_q2(std::uint32_t word, std::int32_t last) {
-    const auto number = word & 3U;
-    const auto& scale = ultra_dense_scales[number];
-    const auto steps = static_cast<std::int32_t>(word >> 2 & ((1U << scale.distance_bits) - 1U));
-    const auto distance = (scale.first_mm + steps * scale.step_mm) * 4;
-    if (number == 0 && last != 0 && std::abs(distance - last) <= smoothed_within_q2) {
-        return (distance + last) / 2;
+constexpr auto scale_masks = [] {
+    std::array<ScaleMasks, ultra_dense_scales.size()> masks{};
+    for (std::size_t i = 0; i < masks.size(); ++i) {
+        const auto& scale = ultra_dense_scales[i];
+        masks[i] = {
+            .distance = ((1U << scale.distance_bits) - 1U) << 2,
+            .step_mm = scale.step_mm,
+            .first_q2 = scale.first_mm * 4,
+            .quality = 0xFFU << (scale.distance_bits - 10) & 0xFFU,
+            .smoothed_within_q2 = i == 0 ? 8 : -1};
     }
-    return distance;
-}
-
-/// The bits above the distance, which are the highest of the quality.
-std::uint8_t quality_of(std::uint32_t word) {
-    const auto bits = ultra_dense_scales[word & 3U].distance_bits;
-    return static_cast<std::uint8_t>(word >> (bits + 2) << (bits - 10));
-}
+    return masks;
+}();
 
 }  // namespace
 
@@ -40,11 +44,15 @@ void UltraDenseFormat::decode(const FinishedCapsule<packet_size(type)>& capsule,
     auto mark = mark_;
     auto last = last_distance_q2_;
     const auto put = [&](std::uint32_t word) {
-        last = distance_q2(word, last);
+        const auto& scale = scale_masks[word & 3U];
+        const auto alone =
+            static_cast<std::int32_t>(word & scale.distance) * scale.step_mm + scale.first_q2;
+        const bool smoothed = last != 0 && std::abs(alone - last) <= scale.smoothed_within_q2;
+        last = smoothed ? (alone + last) / 2 : alone;
         sample->time = time;
         sample->distance.raw = static_cast<std::uint32_t>(last);
         sample->angle = angle_from_q6(angles.raw_q16() >> 10);
-        sample->quality = quality_of(word);
+        sample->quality = static_cast<std::uint8_t>(word >> 12 & scale.quality);
         angles.advance();
         sample->flag = capsule_flag(mark.take(angles));
         time += capsule.sample_duration;

@@ -4,6 +4,7 @@
 #include "driver/protocol/capsule.hpp"
 #include "driver/protocol/wire.hpp"
 
+#include <bit>
 #include <span>
 
 namespace sweepcast::protocol {
@@ -26,9 +27,9 @@ std::int32_t nearest_difference(std::int32_t mm, const UltraMajor& base) {
     if (mm == 0) {
         return ultra_no_echo;
     }
-    const auto half_step = (1 << base.level) / 2;
-    auto steps = (mm - base.mm + half_step) >> base.level;
-    if (base.mm + steps * (1 << base.level) <= 0) {
+    auto steps =
+        (mm - base.mm + base.step / 2) >> std::countr_zero(static_cast<unsigned>(base.step));
+    if (base.mm + steps * base.step <= 0) {
         ++steps;  // 0 would say that there is no echo
     }
     return steps > ultra_no_echo && steps < ultra_no_echo_too ? steps : ultra_no_echo;
