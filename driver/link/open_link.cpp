@@ -101,9 +101,12 @@ connect_within(Socket& socket, const Endpoints& endpoints, Deadline deadline) {
 
 /// A connected socket.
 template <class Protocol>
-asio::awaitable<Result<typename Protocol::socket>>
-connect(asio::any_io_executor executor, const std::string& host, std::uint16_t port) {
-    const Deadline deadline = std::chrono::steady_clock::now() + connect_limit;
+asio::awaitable<Result<typename Protocol::socket>> connect(
+    asio::any_io_executor executor,
+    const std::string& host,
+    std::uint16_t port,
+    Deadline deadline
+) {
     const auto endpoints = co_await look_up<Protocol>(executor, host, port, deadline);
     if (!endpoints) {
         co_return endpoints.error();
@@ -116,16 +119,18 @@ connect(asio::any_io_executor executor, const std::string& host, std::uint16_t p
     co_return std::move(socket);
 }
 
-asio::awaitable<Opened> open_tcp(asio::any_io_executor executor, TcpPlace place) {
-    auto socket = co_await connect<tcp>(executor, place.host, place.port);
+asio::awaitable<Opened>
+open_tcp(asio::any_io_executor executor, TcpPlace place, Deadline deadline) {
+    auto socket = co_await connect<tcp>(executor, place.host, place.port, deadline);
     if (!socket) {
         co_return explain_connect_error("tcp", place.host, place.port, socket.error());
     }
     co_return make_tcp_link(std::move(*socket));
 }
 
-asio::awaitable<Opened> open_udp(asio::any_io_executor executor, UdpPlace place) {
-    auto socket = co_await connect<udp>(executor, place.host, place.port);
+asio::awaitable<Opened>
+open_udp(asio::any_io_executor executor, UdpPlace place, Deadline deadline) {
+    auto socket = co_await connect<udp>(executor, place.host, place.port, deadline);
     if (!socket) {
         co_return explain_connect_error("udp", place.host, place.port, socket.error());
     }
@@ -172,14 +177,20 @@ Problem explain_host_not_found(const std::string& host, const error_code& error)
 
 }  // namespace
 
-asio::awaitable<Opened> open_link(asio::any_io_executor executor, LinkUrl url, std::uint32_t baud) {
+asio::awaitable<Opened> open_link(
+    asio::any_io_executor executor,
+    LinkUrl url,
+    std::uint32_t baud,
+    std::chrono::milliseconds limit
+) {
+    const Deadline deadline = std::chrono::steady_clock::now() + limit;
     if (const auto* serial = std::get_if<SerialPlace>(&url.where)) {
         co_return open_serial(executor, serial->path, baud);
     }
     if (const auto* over_tcp = std::get_if<TcpPlace>(&url.where)) {
-        co_return co_await open_tcp(executor, *over_tcp);
+        co_return co_await open_tcp(executor, *over_tcp, deadline);
     }
-    co_return co_await open_udp(executor, std::get<UdpPlace>(url.where));
+    co_return co_await open_udp(executor, std::get<UdpPlace>(url.where), deadline);
 }
 
 Problem explain_connect_error(
@@ -219,7 +230,7 @@ Problem explain_connect_error(
     if (code == errc::timed_out) {
         return {
             code,
-            fmt::format("{} did not answer within {} s", where, connect_limit.count()),
+            fmt::format("{} did not answer in time", where),
             fmt::format(
                 "check the address, the lidar's power and its network cable: does `ping {}` "
                 "answer?",

@@ -31,6 +31,7 @@ public:
     ~PtyPair() { hang_up(); }
 
     [[nodiscard]] const std::string& path() const { return path_; }
+    [[nodiscard]] int fd() const { return master_; }
 
     void send(std::span<const std::uint8_t> bytes) const {
         if (::write(master_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) {
