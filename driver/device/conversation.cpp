@@ -19,9 +19,13 @@ constexpr auto drain_limit = 200ms;
 
 }  // namespace
 
+asio::awaitable<Result<void>> Conversation::write(std::span<const std::uint8_t> bytes) {
+    co_return co_await link_.write_all(bytes, Clock::now() + send_limit);
+}
+
 asio::awaitable<Result<void>> Conversation::send(const protocol::Request& request) {
     const auto bytes = protocol::encode(request);
-    co_return co_await link_.write_all(bytes, Clock::now() + send_limit);
+    co_return co_await write(bytes);
 }
 
 asio::awaitable<Result<void>> Conversation::silence() {

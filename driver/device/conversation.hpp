@@ -22,6 +22,11 @@ class Conversation {
 public:
     explicit Conversation(link::Link& link) : link_(link) {}
 
+    [[nodiscard]] link::Link& link() { return link_; }
+
+    /// Sends bytes that are no request. Errors: those of the link.
+    boost::asio::awaitable<Result<void>> write(std::span<const std::uint8_t> bytes);
+
     /// Sends a request that has no answer.
     /// Errors: those of the link.
     boost::asio::awaitable<Result<void>> send(const protocol::Request& request);

@@ -21,6 +21,12 @@ public:
             return "no such scan mode";
         case errc::not_ready:
             return "the lidar did not get there in time";
+        case errc::no_such_speed:
+            return "the lidar is not made for that speed";
+        case errc::fixed_speed:
+            return "the speed of this lidar cannot be changed";
+        case errc::baud_refused:
+            return "the lidar would not be talked into another line speed";
         case errc::superseded:
             return "another command came first";
         case errc::internal:

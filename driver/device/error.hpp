@@ -11,6 +11,9 @@ enum class errc {
     protection_stop,  ///< the lidar reports a fault and has switched itself off
     unknown_mode,     ///< no scan mode of that name
     not_ready,        ///< the command did not take effect in time
+    no_such_speed,    ///< a rotation speed beyond what the lidar is made for
+    fixed_speed,      ///< the rotation speed of this lidar cannot be changed
+    baud_refused,     ///< the lidar would not be talked into another line speed
     superseded,       ///< another command came before this one took effect
     shutting_down,    ///< the gateway is ending
     internal,         ///< a fault of ours

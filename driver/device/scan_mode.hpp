@@ -40,10 +40,11 @@ legacy_modes(const protocol::DeviceInfo& info, const protocol::SampleRate& rate)
 /// The request that starts a scan in this mode.
 [[nodiscard]] protocol::Request scan_request(const ScanMode& mode);
 
-/// The mode called `name` (upper or lower case), or nullptr.
+/// The mode called `name` (upper or lower case), else the one of that id, or nullptr.
 [[nodiscard]] const ScanMode* find_mode(const std::vector<ScanMode>& modes, std::string_view name);
 
-/// The mode with the most samples a second, or nullptr if there is none.
-[[nodiscard]] const ScanMode* fastest_mode(const std::vector<ScanMode>& modes);
+/// The mode to take when nobody asks for one: the lidar's typical one, else the one with the most
+/// samples a second; nullptr if there is none.
+[[nodiscard]] const ScanMode* best_mode(const std::vector<ScanMode>& modes);
 
 }  // namespace sweepcast::device

@@ -39,9 +39,41 @@ TEST(FindMode, TakesNoNoticeOfCase) {
     EXPECT_EQ(find_mode(modes, ""), nullptr);
 }
 
-TEST(FastestMode, IsTheOneWithMostSamplesASecond) {
-    EXPECT_EQ(fastest_mode(legacy_modes(firmware(1, 29), rate))->name, "Express");
-    EXPECT_EQ(fastest_mode({}), nullptr);
+TEST(FindMode, TakesAnIdToo) {
+    auto modes = legacy_modes(firmware(1, 29), rate);
+    EXPECT_EQ(find_mode(modes, "1"), nullptr) << "modes that nobody listed have no ids";
+    modes[1].id = 1;
+    EXPECT_EQ(find_mode(modes, "1"), &modes[1]);
+    EXPECT_EQ(find_mode(modes, "01"), nullptr);
+}
+
+TEST(BestMode, IsTheOneWithMostSamplesASecond) {
+    EXPECT_EQ(best_mode(legacy_modes(firmware(1, 29), rate))->name, "Express");
+    EXPECT_EQ(best_mode({}), nullptr);
+}
+
+TEST(BestMode, IsTheTypicalOneIfThereIsOne) {
+    auto modes = legacy_modes(firmware(1, 29), rate);
+    modes[0].typical = true;
+    EXPECT_EQ(best_mode(modes)->name, "Standard");
+}
+
+TEST(ScanRequest, NamesTheIdOfAListedMode) {
+    const ScanMode mode{
+        .name = "Boost",
+        .answer_type = protocol::AnswerType::ultra,
+        .sample_duration = 63us,
+        .id = 2};
+    EXPECT_EQ(scan_request(mode), protocol::express_scan_request(2));
+}
+
+TEST(ScanRequest, OfANormalModeIsNeverAnExpressOne) {
+    const ScanMode mode{
+        .name = "Standard",
+        .answer_type = protocol::AnswerType::normal,
+        .sample_duration = 500us,
+        .id = 3};
+    EXPECT_EQ(scan_request(mode).command, protocol::Command::scan);
 }
 
 TEST(ScanRequest, OfAnExpressModeIsTheLegacyOne) {
