@@ -3,6 +3,8 @@
 #include "driver/device/error.hpp"
 #include "driver/link/error.hpp"
 
+#include <fmt/format.h>
+
 #include <string>
 
 namespace sweepcast::device {
@@ -39,6 +41,37 @@ Problem not_ready(Phase phase) {
         make_error_code(errc::not_ready),
         "the lidar is still " + std::string(name(phase)),
         "the command stays in force; its state tells when it has taken effect"};
+}
+
+std::optional<Problem> speed_problem(double hz, const MotorTraits& motor, bool is_known) {
+    constexpr double most_hz = 50.0;
+    if (!(hz >= 0.0 && hz <= most_hz)) {  // written so that NaN is refused
+        return Problem{
+            make_error_code(errc::no_such_speed),
+            fmt::format("no lidar turns at {} Hz", hz),
+            "give turns a second, such as 7, or 0 for the lidar's usual speed"};
+    }
+    if (!is_known || hz == 0.0) {
+        return std::nullopt;
+    }
+    if (speed_control(motor.control) == SpeedControl::fixed) {
+        return Problem{
+            make_error_code(errc::fixed_speed),
+            make_error_code(errc::fixed_speed).message(),
+            "its motor has no control that a host could use; 0 withdraws the wish"};
+    }
+    if (motor.max_rpm > 0 && (hz * 60.0 < motor.min_rpm || hz * 60.0 > motor.max_rpm)) {
+        return Problem{
+            make_error_code(errc::no_such_speed),
+            fmt::format("this lidar is not made for {} Hz", hz),
+            fmt::format(
+                "give turns a second from {:.1f} to {:.1f}, or 0 for its usual {:.1f}",
+                motor.min_rpm / 60.0,
+                motor.max_rpm / 60.0,
+                motor.desired.rpm / 60.0
+            )};
+    }
+    return std::nullopt;
 }
 
 Problem unknown_mode(std::string_view name, const std::vector<ScanMode>& modes) {

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "driver/device/device_state.hpp"
+#include "driver/device/motor_traits.hpp"
 #include "driver/device/scan_mode.hpp"
 #include "driver/protocol/result.hpp"
 
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -23,6 +25,11 @@ inline constexpr std::string_view cable_advice =
 
 /// A command has not taken effect in time: the lidar is still in this phase.
 [[nodiscard]] Problem not_ready(Phase phase);
+
+/// What is wrong with the wish to turn at `hz` turns a second (0: the usual speed), if anything.
+/// What the motor cannot do counts once the lidar `is_known`.
+[[nodiscard]] std::optional<Problem>
+speed_problem(double hz, const MotorTraits& motor, bool is_known);
 
 /// There is no scan mode called `name`; names those there are.
 [[nodiscard]] Problem unknown_mode(std::string_view name, const std::vector<ScanMode>& modes);

@@ -2,16 +2,14 @@
 
 #include "driver/device/advice.hpp"
 #include "driver/device/error.hpp"
-#include "driver/device/probe.hpp"
+#include "driver/device/find_baud.hpp"
+#include "driver/device/motor.hpp"
 #include "driver/link/error.hpp"
-#include "driver/protocol/decode.hpp"
 #include "driver/protocol/model.hpp"
-#include "driver/protocol/sweep_assembler.hpp"
 
-#include <boost/asio/steady_timer.hpp>
-#include <boost/asio/this_coro.hpp>
-#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/experimental/awaitable_operators.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace sweepcast::device {
@@ -22,20 +20,7 @@ using Clock = std::chrono::steady_clock;
 
 namespace {
 
-constexpr auto descriptor_limit = 2000ms;
-/// The device holds samples back until its speed is stable, one to two seconds (protocol.md 13.17).
-constexpr auto spin_up_limit = 6s;
-/// Samples come every few milliseconds once they do.
-constexpr auto silence_limit = 1000ms;
-/// Between switching the motor and the next request, as the vendor's SDK does (protocol.md 4.3).
-constexpr auto motor_pause = 10ms;
 constexpr auto boot_limit = 15s;
-
-constexpr auto start_limit = 10s;
-constexpr auto stop_limit = 3s;
-constexpr auto reset_limit = boot_limit + start_limit;
-
-constexpr std::uint16_t usual_pwm = 660;
 
 /// Closes a borrowed pointer's life with the scope that owns the object.
 class Lend {
@@ -66,6 +51,7 @@ Device::Device(
     , changed_(executor) {
     wanted_.scanning = options_.scan_at_once;
     wanted_.mode = options_.mode;
+    wanted_.speed_hz = options_.speed_hz;
     state_.since = std::chrono::system_clock::now();
 }
 
@@ -89,79 +75,6 @@ void Device::shut_down() {
     changed_.notify();  // whoever waits for a command to take effect need wait no more
 }
 
-asio::awaitable<Result<void, Problem>> Device::start(std::string mode) {
-    if (!mode.empty() && !state_.modes.empty() && find_mode(state_.modes, mode) == nullptr) {
-        co_return unknown_mode(mode, state_.modes);
-    }
-    const bool other_mode = !mode.empty() && mode != wanted_.mode;
-    if (other_mode) {
-        wanted_.mode = std::move(mode);
-    }
-    if (!std::exchange(wanted_.scanning, true) || other_mode) {
-        ++wanted_.command;
-    }
-    co_return co_await settle(
-        [this] {
-            const auto* mode_wanted = wanted_mode();
-            return state_.phase == Phase::scanning && mode_wanted != nullptr &&
-                   mode_wanted->name == state_.mode;
-        },
-        start_limit
-    );
-}
-
-asio::awaitable<Result<void, Problem>> Device::stop() {
-    if (std::exchange(wanted_.scanning, false)) {
-        ++wanted_.command;
-    }
-    co_return co_await settle(
-        [this] {
-            return state_.phase == Phase::idle || state_.phase == Phase::failed ||
-                   state_.phase == Phase::protection_stop || state_.phase == Phase::disconnected;
-        },
-        stop_limit
-    );
-}
-
-asio::awaitable<Result<void, Problem>> Device::reset() {
-    if (!std::exchange(wanted_.reset, true)) {
-        ++wanted_.command;
-    }
-    co_return co_await settle([this] { return !wanted_.reset && settled(); }, reset_limit);
-}
-
-/// Waits until a command has taken effect, or cannot any more.
-asio::awaitable<Result<void, Problem>>
-Device::settle(std::function<bool()> reached, std::chrono::milliseconds limit) {
-    const auto command = wanted_.command;
-    const auto version = state_version_;
-    const auto deadline = Clock::now() + limit;
-    if (!reached()) {
-        poke();
-    }
-    while (!reached()) {
-        if (wanted_.shutdown) {
-            co_return advice(errc::shutting_down);
-        }
-        if (wanted_.command != command) {
-            co_return advice(errc::superseded);
-        }
-        const bool failed = state_.phase == Phase::failed || state_.phase == Phase::protection_stop;
-        if (failed && state_version_ != version) {
-            co_return Problem{make_error_code(errc::not_ready), state_.cause, state_.hint};
-        }
-        if (!state_.modes.empty() && wanted_mode() == nullptr) {
-            // Asked for before it was known which modes there are.
-            co_return unknown_mode(std::exchange(wanted_.mode, ""), state_.modes);
-        }
-        const bool changed = co_await changed_.wait_until(deadline);
-        if (!changed && !reached()) {
-            co_return not_ready(state_.phase);
-        }
-    }
-    co_return Result<void, Problem>{};
-}
-
 /// live(), with what must not happen (a broken invariant, no memory) made a failure like others.
 asio::awaitable<Problem> Device::live_guarded() {
     try {
@@ -176,7 +89,7 @@ asio::awaitable<Problem> Device::live_guarded() {
 /// One connection, from opening the port to losing it. Returns what ended it.
 asio::awaitable<Problem> Device::live() {
     set_phase(Phase::identifying);
-    auto opened = co_await open_link_(default_baud);
+    auto opened = co_await open();
     if (!opened) {
         co_return opened.error();
     }
@@ -185,20 +98,35 @@ asio::awaitable<Problem> Device::live() {
     Conversation talk(*link);
     auto problem = co_await hold(talk);
     // However it ended: nobody wants the motor to turn now. The line may be gone, too.
-    (void)co_await set_motor(talk, false);
+    (void)co_await stop_motor(talk, motor_.control);
     co_return problem;
+}
+
+/// Opens the link; given up at shutdown, as a connection over a network takes its time.
+asio::awaitable<Result<std::unique_ptr<link::Link>, Problem>> Device::open() {
+    using namespace asio::experimental::awaitable_operators;
+    auto first = co_await (open_link_(bauds().front()) || until_shutdown());
+    if (auto* opened = std::get_if<0>(&first)) {
+        co_return std::move(*opened);
+    }
+    co_return Problem{make_error_code(errc::shutting_down), "", ""};
+}
+
+asio::awaitable<void> Device::until_shutdown() {
+    while (!wanted_.shutdown) {
+        co_await commanded_.wait_until(Clock::time_point::max());
+    }
 }
 
 /// Identifies the lidar and does what is wanted of it, until the line breaks or it does not answer.
 asio::awaitable<Problem> Device::hold(Conversation& talk) {
-    auto identity = co_await identify(talk);
-    while (!identity && identity.error() == link::errc::interrupted && !wanted_.shutdown) {
-        identity = co_await identify(talk);
+    auto met = co_await meet(talk);
+    while (!met && met.error() == link::errc::interrupted && !wanted_.shutdown) {
+        met = co_await meet(talk);
     }
-    if (!identity) {
-        co_return advice(identity.error());
+    if (!met) {
+        co_return advice(met.error());
     }
-    adopt(std::move(*identity));
     while (!wanted_.shutdown) {
         const auto step = co_await next_step(talk);
         if (!step && step.error() != link::errc::interrupted) {
@@ -206,6 +134,57 @@ asio::awaitable<Problem> Device::hold(Conversation& talk) {
         }
     }
     co_return Problem{};
+}
+
+/// Finds the lidar on its line and gets to know it.
+asio::awaitable<Result<void>> Device::meet(Conversation& talk) {
+    const auto found = co_await find(talk);
+    if (!found) {
+        co_return found;
+    }
+    auto identity = co_await identify(talk);
+    if (!identity) {
+        co_return identity.error();
+    }
+    adopt(std::move(*identity));
+    co_return Result<void>{};
+}
+
+/// Finds the line speed of the lidar, and talks it into the one that was asked for.
+asio::awaitable<Result<void>> Device::find(Conversation& talk) {
+    const auto candidates = bauds();
+    const auto found = co_await find_baud(talk, candidates);
+    if (!found) {
+        co_return found.error();
+    }
+    state_.line = {.baud = found->baud};
+    const auto wish = options_.baud.value_or(found->baud);
+    if (wish == found->baud || talk.link().is_network()) {
+        co_return Result<void>{};
+    }
+    auto followed = Result<void>(make_error_code(errc::baud_refused));
+    if (protocol::knows_baud_negotiation(found->info)) {
+        followed = co_await negotiate_baud(talk, wish);
+    }
+    if (followed) {
+        log_->info("talked into {} baud, from {}", wish, found->baud);
+        state_.line.baud = wish;
+    } else if (followed.error() == errc::baud_refused) {
+        log_->warn("the lidar speaks at {} baud and not at {}: using that", found->baud, wish);
+        followed = Result<void>{};
+    }
+    co_return followed;
+}
+
+/// Line speeds in the order in which to try them.
+std::vector<std::uint32_t> Device::bauds() const {
+    std::vector<std::uint32_t> hints;
+    if (options_.baud) {
+        hints.push_back(*options_.baud);
+    }
+    hints.push_back(state_.line.baud);
+    hints.insert(hints.end(), options_.baud_hints.begin(), options_.baud_hints.end());
+    return bauds_to_try(hints);
 }
 
 asio::awaitable<Result<void>> Device::next_step(Conversation& talk) {
@@ -224,7 +203,8 @@ asio::awaitable<Result<void>> Device::next_step(Conversation& talk) {
 /// Motor off; waits for a command. Asks now and then whether the lidar is still there and well: an
 /// idle one says nothing by itself when its cable is pulled or its protection stop ends.
 asio::awaitable<Result<void>> Device::idle(Conversation& talk, Phase phase) {
-    if (auto off = co_await set_motor(talk, false); !off) {
+    const auto off = co_await stop_motor(talk, motor_.control);
+    if (!off) {
         co_return off;
     }
     const auto status = state_.health->status;
@@ -250,85 +230,62 @@ asio::awaitable<Result<void>> Device::idle(Conversation& talk, Phase phase) {
 asio::awaitable<Result<void>> Device::scan(Conversation& talk) {
     const auto* mode = wanted_mode();
     if (mode == nullptr) {
-        mode = fastest_mode(state_.modes);
+        mode = best_mode(state_.modes);
     }
     if (mode == nullptr) {
         co_return make_error_code(errc::unknown_mode);
     }
-    state_.mode = mode->name;
+    mode_ = *mode;
+    state_.mode = mode_.name;
+    regulator_.want(wanted_.speed_hz);
+    state_.rotation = regulator_.rotation();
     set_phase(Phase::starting);
-    if (auto on = co_await set_motor(talk, true); !on) {
-        co_return on;
-    }
-    const auto request = scan_request(*mode);
-    const auto descriptor = co_await talk.open_stream(request, descriptor_limit);
-    auto ended = Result<void>(descriptor.error());
-    if (descriptor) {
-        const auto type = static_cast<protocol::AnswerType>(descriptor->type);
-        ended = co_await deliver_sweeps(talk, type, *mode);
-    }
+    Scan scan(talk, mode_, motor_.control, regulator_, state_.line, *this);
+    const auto ended = co_await scan.run();
+    regulator_.stopped();
+    state_.rotation = regulator_.rotation();
     if (ended.error() == link::errc::disconnected) {
         co_return ended;
     }
     set_phase(Phase::stopping);
-    if (auto silent = co_await talk.silence();
-        !silent && silent.error() != link::errc::interrupted) {
+    const auto silent = co_await talk.silence();
+    if (!silent && silent.error() != link::errc::interrupted) {
         co_return silent;
-    }
-    if (ended.error() == link::errc::timed_out) {
-        co_return make_error_code(descriptor ? errc::stream_silent : errc::no_answer);
     }
     co_return ended;
 }
 
-/// Reads, decodes and gives out sweeps until something ends it; never returns success.
-asio::awaitable<Result<void>>
-Device::deliver_sweeps(Conversation& talk, protocol::AnswerType type, const ScanMode& mode) {
-    auto decoder = protocol::Decoder::create(
-        type,
-        {std::chrono::round<std::chrono::microseconds>(mode.sample_duration),
-         link_->baud(),
-         link_->is_network()}
-    );
-    if (!decoder) {
-        co_return decoder.error();
+void Device::on_first_samples() {
+    set_phase(Phase::scanning);
+}
+
+void Device::on_revolution(protocol::Sweep sweep, protocol::AnswerType type) {
+    report_scan();
+    const std::chrono::nanoseconds unix_now = std::chrono::system_clock::now().time_since_epoch();
+    const std::chrono::nanoseconds monotonic_now = Clock::now().time_since_epoch();
+    CapturedSweep captured;
+    captured.sweep = std::move(sweep);
+    captured.mode = mode_.name;
+    captured.answer_type = type;
+    captured.sample_duration = std::chrono::round<std::chrono::microseconds>(mode_.sample_duration);
+    captured.monotonic_to_unix = unix_now - monotonic_now;
+    captured.sequence = ++sequence_;
+    observer_.on_sweep(std::move(captured));
+}
+
+/// Tells the speed and the state of the line: at once when the speed is reached or lost, else now
+/// and then.
+void Device::report_scan() {
+    const bool was_settled = std::exchange(state_.rotation, regulator_.rotation()).settled;
+    if (state_.rotation.warning != told_warning_) {
+        told_warning_ = state_.rotation.warning;
+        if (!told_warning_.empty()) {
+            log_->warn("{}", told_warning_);
+        }
+    } else if (state_.rotation.settled == was_settled && Clock::now() - told_at_ < options_.report_interval) {
+        return;
     }
-    // A network hands over what came in a datagram or segment at once.
-    const std::chrono::nanoseconds per_byte(
-        link_->is_network() ? 0 : 10'000'000'000LL / std::max(link_->baud(), 1U)
-    );
-    protocol::SweepAssembler assembler;
-    protocol::Decoded decoded;
-    std::vector<protocol::Sweep> finished;
-    auto deadline = Clock::now() + spin_up_limit;
-    for (;;) {
-        const auto bytes = co_await talk.read(deadline);
-        if (!bytes) {
-            co_return bytes.error();
-        }
-        const auto now = Clock::now();
-        decoded.clear();
-        decoder->push(
-            *bytes,
-            {std::chrono::time_point_cast<std::chrono::microseconds>(now), per_byte},
-            decoded
-        );
-        if (decoded.samples.empty()) {
-            if (now >= deadline) {  // bytes alone are no scan
-                co_return make_error_code(link::errc::timed_out);
-            }
-            continue;
-        }
-        deadline = now + silence_limit;
-        if (state_.phase != Phase::scanning) {
-            set_phase(Phase::scanning);
-        }
-        finished.clear();
-        assembler.push(decoded, finished);
-        for (auto& sweep : finished) {
-            publish(std::move(sweep), type, mode);
-        }
-    }
+    tell_state();
 }
 
 /// RESET, then asks until the lidar has booted (protocol.md 11.2: poll, do not sleep blindly).
@@ -355,61 +312,39 @@ asio::awaitable<Result<void>> Device::reboot(Conversation& talk) {
     }
 }
 
-/// An A1's motor hangs on the adapter's DTR line and runs while that is released; an A2's on its
-/// accessory board, which takes a request. Both are tried, as the field's drivers do: DTR is
-/// harmless to an A2, and an A1 ignores the request (protocol.md 5).
-asio::awaitable<Result<void>> Device::set_motor(Conversation& talk, bool on) {
-    const auto released = link_->set_dtr(!on);
-    if (!released && released.error() != link::errc::no_modem_lines) {
-        co_return released;
-    }
-    const auto request = protocol::set_motor_pwm_request(on ? usual_pwm : 0);
-    const auto sent = co_await talk.send(request);
-    if (sent) {
-        asio::steady_timer pause(co_await asio::this_coro::executor, motor_pause);
-        co_await pause.async_wait(asio::use_awaitable);
-    }
-    co_return sent;
-}
-
 void Device::adopt(Identity identity) {
     log_->info(
-        "{} serial {} firmware {}.{:02} hardware {}",
-        protocol::model_name(identity.info.model),
+        "{} serial {} firmware {}.{:02} hardware {}{}",
+        shown_name(identity),
         protocol::serial_text(identity.info.serial),
         identity.info.firmware_major,
         identity.info.firmware_minor,
-        identity.info.hardware
+        identity.info.hardware,
+        state_.line.baud > 0 ? fmt::format(", {} baud", state_.line.baud) : ""
     );
     state_.info = identity.info;
     state_.health = identity.health;
     state_.modes = std::move(identity.modes);
-    told_failure_.clear();
+    state_.alias = std::move(identity.alias);
+    motor_ = identity.motor;
+    regulator_ = SpeedRegulator(motor_);
+    regulator_.want(wanted_.speed_hz);
+    state_.rotation = regulator_.rotation();
     const auto* mode = wanted_mode();
     if (mode == nullptr) {
         const auto problem = unknown_mode(wanted_.mode, state_.modes);
-        log_->warn("{}: {}; taking the fastest", problem.cause, problem.hint);
-        mode = fastest_mode(state_.modes);
+        log_->warn("{}: {}; taking the one that the lidar recommends", problem.cause, problem.hint);
+        mode = best_mode(state_.modes);
     }
     if (mode != nullptr) {
         state_.mode = mode->name;
     }
 }
 
-void Device::publish(protocol::Sweep sweep, protocol::AnswerType type, const ScanMode& mode) {
-    const std::chrono::nanoseconds unix_now = std::chrono::system_clock::now().time_since_epoch();
-    const std::chrono::nanoseconds monotonic_now = Clock::now().time_since_epoch();
-    CapturedSweep captured;
-    captured.sweep = std::move(sweep);
-    captured.mode = mode.name;
-    captured.answer_type = type;
-    captured.sample_duration = std::chrono::round<std::chrono::microseconds>(mode.sample_duration);
-    captured.monotonic_to_unix = unix_now - monotonic_now;
-    captured.sequence = ++sequence_;
-    observer_.on_sweep(std::move(captured));
-}
-
 void Device::set_phase(Phase phase, const Problem& why) {
+    if (phase == Phase::scanning || phase == Phase::idle) {
+        told_failure_.clear();
+    }
     if (state_.phase != phase) {
         // Attempts that fail again as they did before are no news.
         log_->log(
@@ -423,6 +358,11 @@ void Device::set_phase(Phase phase, const Problem& why) {
     state_.hint = why.hint;
     state_.since = std::chrono::system_clock::now();
     ++state_version_;
+    tell_state();
+}
+
+void Device::tell_state() {
+    told_at_ = Clock::now();
     observer_.on_state(state_);
     changed_.notify();
 }
@@ -451,8 +391,7 @@ void Device::poke() {
 }
 
 const ScanMode* Device::wanted_mode() const {
-    return wanted_.mode.empty() ? fastest_mode(state_.modes)
-                                : find_mode(state_.modes, wanted_.mode);
+    return wanted_.mode.empty() ? best_mode(state_.modes) : find_mode(state_.modes, wanted_.mode);
 }
 
 /// In the phase that is wanted, with nothing left to do.

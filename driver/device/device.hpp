@@ -7,6 +7,8 @@
 #include "driver/device/conversation.hpp"
 #include "driver/device/device_state.hpp"
 #include "driver/device/identify.hpp"
+#include "driver/device/scan.hpp"
+#include "driver/device/speed_regulator.hpp"
 #include "driver/link/link.hpp"
 #include "driver/protocol/result.hpp"
 
@@ -18,7 +20,9 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace sweepcast::device {
 
@@ -31,24 +35,31 @@ public:
     virtual void on_sweep(CapturedSweep sweep) = 0;
 };
 
-/// Opens the way to the device anew, at `baud` bits per second if it is a serial port; called for
-/// every attempt.
+/// Opens the device's port anew, at a line speed if it has one; called for every attempt.
 using OpenLink = std::function<
     boost::asio::awaitable<Result<std::unique_ptr<link::Link>, Problem>>(std::uint32_t baud)>;
 
 struct DeviceOptions {
     /// Start scanning as soon as the device is there.
     bool scan_at_once{true};
-    /// Name of the scan mode; empty: the fastest.
+    /// Name or id of the scan mode; empty: the typical one.
     std::string mode{};
+    /// Turns a second; 0: the lidar's usual speed.
+    double speed_hz{};
+    /// The line speed to use. A lidar that speaks at another is talked into it if it can be.
+    std::optional<std::uint32_t> baud{};
+    /// Line speeds at which to look for it first.
+    std::vector<std::uint32_t> baud_hints{};
     /// How long to wait after a failure before the next attempt.
     std::chrono::milliseconds retry_delay{2000};
     /// How often to ask a lidar that does not scan whether it is there and well.
     std::chrono::milliseconds health_interval{2000};
+    /// How often to tell the measured speed and the state of the line while scanning.
+    std::chrono::milliseconds report_interval{2000};
 };
 
 /// One lidar, on one executor; all members are to be called on it.
-class Device {
+class Device : private ScanObserver {
 public:
     Device(
         boost::asio::any_io_executor executor,
@@ -66,7 +77,7 @@ public:
     /// Makes run() end.
     void shut_down();
 
-    /// Scans, in the named mode (empty: as before). Returns once samples come in.
+    /// Scans, in the mode of that name or id (empty: as before). Returns once samples come in.
     /// Errors: errc::unknown_mode, not_ready, superseded, shutting_down, or why the device failed.
     boost::asio::awaitable<Result<void, Problem>> start(std::string mode);
 
@@ -78,6 +89,14 @@ public:
     /// Returns once the lidar has answered and, where wanted, scans. Errors: as start().
     boost::asio::awaitable<Result<void, Problem>> reset();
 
+    /// Has it scan in another mode from now on, or from the next start on. Returns once it does.
+    /// Errors: as start().
+    boost::asio::awaitable<Result<void, Problem>> set_mode(std::string mode);
+
+    /// Has it turn at `hz` from now on, 0: at its usual speed. Returns at once: its state tells
+    /// when the speed is reached. Errors: errc::no_such_speed, fixed_speed.
+    Result<void, Problem> set_speed(double hz);
+
     [[nodiscard]] const DeviceState& state() const { return state_; }
 
 private:
@@ -85,6 +104,7 @@ private:
     struct Wanted {
         bool scanning{};
         std::string mode{};
+        double speed_hz{};
         bool reset{};
         bool shutdown{};
         std::uint64_t command{};
@@ -92,20 +112,26 @@ private:
 
     boost::asio::awaitable<Problem> live_guarded();
     boost::asio::awaitable<Problem> live();
+    boost::asio::awaitable<Result<std::unique_ptr<link::Link>, Problem>> open();
     boost::asio::awaitable<Problem> hold(Conversation& talk);
+    boost::asio::awaitable<Result<void>> meet(Conversation& talk);
+    boost::asio::awaitable<Result<void>> find(Conversation& talk);
     boost::asio::awaitable<Result<void>> next_step(Conversation& talk);
     boost::asio::awaitable<Result<void>> idle(Conversation& talk, Phase phase);
     boost::asio::awaitable<Result<void>> scan(Conversation& talk);
-    boost::asio::awaitable<Result<void>>
-    deliver_sweeps(Conversation& talk, protocol::AnswerType type, const ScanMode& mode);
     boost::asio::awaitable<Result<void>> reboot(Conversation& talk);
-    boost::asio::awaitable<Result<void>> set_motor(Conversation& talk, bool on);
+    boost::asio::awaitable<void> until_shutdown();
     boost::asio::awaitable<Result<void, Problem>>
     settle(std::function<bool()> reached, std::chrono::milliseconds limit);
 
+    void on_first_samples() override;
+    void on_revolution(protocol::Sweep sweep, protocol::AnswerType type) override;
+
     void adopt(Identity identity);
-    void publish(protocol::Sweep sweep, protocol::AnswerType type, const ScanMode& mode);
+    [[nodiscard]] std::vector<std::uint32_t> bauds() const;
+    void report_scan();
     void set_phase(Phase phase, const Problem& why = {});
+    void tell_state();
     void tell_failure(const Problem& problem);
     void poke();
     [[nodiscard]] const ScanMode* wanted_mode() const;
@@ -119,8 +145,13 @@ private:
     Wanted wanted_;
     DeviceState state_;
     std::uint64_t state_version_{};
+    std::chrono::steady_clock::time_point told_at_{};
+    MotorTraits motor_;
+    SpeedRegulator regulator_{motor_};
+    ScanMode mode_;  ///< of the running scan
     std::uint64_t sequence_{};
-    std::string told_failure_;  ///< the cause that the log was last told; empty once identified
+    std::string told_failure_;  ///< the cause that the log was last told; empty once all is well
+    std::string told_warning_;  ///< of the rotation
     link::Link* link_{};        ///< the open one, while there is one
     async::Notifier commanded_;
     async::Notifier changed_;

@@ -3,11 +3,12 @@
 #include "driver/device/advice.hpp"
 #include "driver/device/conversation.hpp"
 #include "driver/device/error.hpp"
-#include "driver/link/port_list.hpp"
-#include "driver/link/serial_link.hpp"
+#include "driver/device/find_baud.hpp"
+#include "driver/link/open_link.hpp"
 #include "driver/protocol/model.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <utility>
 
@@ -15,36 +16,68 @@ namespace sweepcast::device {
 
 namespace asio = boost::asio;
 
-asio::awaitable<Result<Identity, Problem>>
-probe(asio::any_io_executor executor, std::string path, std::uint32_t baud) {
-    auto link = link::open_serial(executor, path, baud);
+namespace {
+
+std::vector<std::uint32_t>
+bauds_for(const link::LinkUrl& url, const std::vector<std::uint32_t>& hints) {
+    const auto* port = std::get_if<link::SerialPlace>(&url.where);
+    if (port != nullptr && port->baud) {
+        return {*port->baud};
+    }
+    return bauds_to_try(hints);
+}
+
+Problem
+no_lidar(const error_code& failure, const link::LinkUrl& url, std::vector<std::uint32_t> bauds) {
+    auto problem = advice(failure);
+    if (problem.code == errc::no_answer) {
+        const bool is_port = std::holds_alternative<link::SerialPlace>(url.where);
+        problem.cause = fmt::format(
+            "nothing that speaks as an RPLIDAR answers on {}{}",
+            url.text,
+            is_port ? fmt::format(" at {} baud", fmt::join(bauds, ", ")) : ""
+        );
+    }
+    return problem;
+}
+
+}  // namespace
+
+asio::awaitable<Result<Probed, Problem>>
+probe(asio::any_io_executor executor, link::LinkUrl url, std::vector<std::uint32_t> baud_hints) {
+    const auto bauds = bauds_for(url, baud_hints);
+    auto link = co_await link::open_link(executor, url, bauds.front());
     if (!link) {
         co_return link.error();
     }
     Conversation talk(**link);
+    const auto found = co_await find_baud(talk, bauds);
+    if (!found) {
+        co_return no_lidar(found.error(), url, bauds);
+    }
     auto identity = co_await identify(talk);
-    if (identity) {
-        co_return std::move(*identity);
+    if (!identity) {
+        co_return no_lidar(identity.error(), url, {found->baud});
     }
-    auto problem = advice(identity.error());
-    if (problem.code == errc::no_answer) {
-        problem.cause =
-            fmt::format("nothing that speaks as an RPLIDAR answers on {} at {} baud", path, baud);
-    }
-    co_return problem;
+    co_return Probed{std::move(*identity), found->baud};
 }
 
-asio::awaitable<std::vector<std::string>>
-discover(asio::any_io_executor executor, std::shared_ptr<spdlog::logger> log) {
-    std::vector<std::string> found;
-    for (const auto& port : link::list_candidate_ports()) {
-        log->info("looking for a lidar on {}", port.path);
-        const auto identity = co_await probe(executor, port.path, default_baud);
-        if (identity) {
-            log->info("{}: {}", port.path, protocol::model_name(identity->info.model));
-            found.push_back(port.path);
+asio::awaitable<std::vector<Discovered>> discover(
+    asio::any_io_executor executor,
+    std::vector<std::string> paths,
+    BaudHints hints,
+    std::shared_ptr<spdlog::logger> log
+) {
+    std::vector<Discovered> found;
+    for (const auto& path : paths) {
+        log->info("looking for a lidar on {}", path);
+        const auto probed =
+            co_await probe(executor, {path, link::SerialPlace{path, {}}}, hints(path));
+        if (probed) {
+            log->info("{}: {} at {} baud", path, shown_name(probed->identity), probed->baud);
+            found.push_back({path, probed->baud});
         } else {
-            log->info("{}: {}", port.path, identity.error().cause);
+            log->info("{}: {}", path, probed.error().cause);
         }
     }
     co_return found;

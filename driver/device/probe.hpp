@@ -2,6 +2,7 @@
 #pragma once
 
 #include "driver/device/identify.hpp"
+#include "driver/link/link_url.hpp"
 #include "driver/protocol/result.hpp"
 
 #include <boost/asio/any_io_executor.hpp>
@@ -9,24 +10,44 @@
 #include <spdlog/logger.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace sweepcast::device {
 
-/// The line speed of an A1, and of older A2s (protocol.md 6).
-constexpr std::uint32_t default_baud = 115200;
+/// A lidar as it was met.
+struct Probed {
+    Identity identity;
+    std::uint32_t baud{};  ///< at which it answered; 0: a network
+};
 
-/// Opens the port, identifies what is there and closes it again. A scan that was running is ended.
-/// The Problem says why there is no answer and what to do.
-boost::asio::awaitable<Result<Identity, Problem>>
-probe(boost::asio::any_io_executor executor, std::string path, std::uint32_t baud);
+/// Opens the link, finds the line speed (trying the one in the URL alone if it has one, else
+/// `baud_hints` and then the usual ones), identifies what is there and closes it again. A scan that
+/// was running is ended. The Problem says why there is no answer and what to do.
+boost::asio::awaitable<Result<Probed, Problem>> probe(
+    boost::asio::any_io_executor executor,
+    link::LinkUrl url,
+    std::vector<std::uint32_t> baud_hints
+);
 
-/// Asks every serial port whose USB adapter is of the kind that RPLIDARs come with, once, and
-/// returns the ports where a lidar answered. Ports of other adapters, and ports in use, are left
-/// alone.
-boost::asio::awaitable<std::vector<std::string>>
-discover(boost::asio::any_io_executor executor, std::shared_ptr<spdlog::logger> log);
+/// A port where a lidar answered.
+struct Discovered {
+    std::string path;
+    std::uint32_t baud{};
+};
+
+/// Line speeds at which a lidar was met before on the port of that path.
+using BaudHints = std::function<std::vector<std::uint32_t>(const std::string& path)>;
+
+/// Asks each of the serial ports `paths`, once, and gives those where a lidar answered. A port in
+/// use is left alone.
+boost::asio::awaitable<std::vector<Discovered>> discover(
+    boost::asio::any_io_executor executor,
+    std::vector<std::string> paths,
+    BaudHints hints,
+    std::shared_ptr<spdlog::logger> log
+);
 
 }  // namespace sweepcast::device

@@ -47,10 +47,11 @@ public:  // the tests' coroutines are lambdas, which inherit no access
 
     Device& make_device(DeviceOptions options = {.retry_delay = 1ms}) {
         options.health_interval = 10ms;
-        const auto open = [this](std::uint32_t baud
-                          ) -> asio::awaitable<Result<std::unique_ptr<link::Link>, Problem>> {
+        auto open = [this](std::uint32_t baud
+                    ) -> asio::awaitable<Result<std::unique_ptr<link::Link>, Problem>> {
             ++opened;
-            line.baud = baud;
+            opened_at = baud;
+            line.baud = line.baud != 0 ? baud : 0;
             if (open_problem) {
                 co_return *open_problem;
             }
@@ -107,6 +108,7 @@ public:  // the tests' coroutines are lambdas, which inherit no access
     std::vector<CapturedSweep> sweeps;
     std::optional<Problem> open_problem;
     int opened{};
+    std::uint32_t opened_at{};
     bool sweep_throws{};
 };
 
@@ -140,7 +142,7 @@ TEST_F(DeviceTest, EndsWithTheScanStoppedAndTheMotorOff) {
     make_device();
     play(until_phase(Phase::scanning));
 
-    EXPECT_EQ(scanner.count(Command::stop), 2U);  // before identifying, and at the end
+    EXPECT_EQ(scanner.count(Command::stop), 3U);  // looking for it, identifying it, the end
     EXPECT_EQ(scanner.requests.back(), protocol::set_motor_pwm_request(0));
     EXPECT_EQ(line.dtr, true);  // asserted: an A1's motor is off
     EXPECT_EQ(phases.back(), Phase::disconnected);
@@ -364,6 +366,157 @@ TEST_F(DeviceTest, AnExceptionOfTheObserverIsAFailureLikeOthers) {
         test.sweep_throws = false;
         co_await test.until([&test] { return !test.sweeps.empty(); });
     }(*this));
+}
+
+TEST_F(DeviceTest, ScansInTheTypicalModeOfALidarThatListsItsModes) {
+    scanner.list_modes();
+    make_device();
+    play(until_phase(Phase::starting));
+
+    EXPECT_EQ(device->state().mode, "Boost");
+    EXPECT_EQ(device->state().modes.size(), 3U);
+    EXPECT_THAT(scanner.requests, Contains(protocol::express_scan_request(2)));
+}
+
+TEST_F(DeviceTest, ScansInTheModeOfAnId) {
+    scanner.list_modes();
+    make_device({.mode = "1", .retry_delay = 1ms});
+    play(until_phase(Phase::starting));
+
+    EXPECT_EQ(device->state().mode, "DenseBoost");
+}
+
+TEST_F(DeviceTest, ChangesTheModeOfAnIdleLidarForTheNextStart) {
+    make_device({.scan_at_once = false, .retry_delay = 1ms});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::idle);
+        const auto changed_mode = co_await test.device->set_mode("standard");
+        EXPECT_TRUE(changed_mode);
+        EXPECT_EQ(test.device->state().phase, Phase::idle);
+        EXPECT_EQ(test.device->state().mode, "Standard");
+        const auto refused = co_await test.device->set_mode("Turbo");
+        EXPECT_FALSE(refused);
+        EXPECT_EQ(refused.error().code, errc::unknown_mode);
+    }(*this));
+    EXPECT_EQ(scanner.count(Command::scan), 0U);
+}
+
+TEST_F(DeviceTest, ChangesTheModeOfAScanningLidarAtOnce) {
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);
+        const auto changed_mode = co_await test.device->set_mode("Standard");
+        EXPECT_TRUE(changed_mode);
+        EXPECT_EQ(test.device->state().phase, Phase::scanning);
+        EXPECT_EQ(test.device->state().mode, "Standard");
+    }(*this));
+    EXPECT_EQ(scanner.count(Command::scan), 1U);
+}
+
+TEST_F(DeviceTest, FindsTheLineSpeedAndGoesThereFirstTheNextTime) {
+    scanner.baud = 460800;
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);
+        EXPECT_EQ(test.opened_at, 115200U);
+        EXPECT_EQ(test.device->state().line.baud, 460800U);
+        test.line.unplug();
+        co_await test.until_phase(Phase::failed);
+        co_await test.until_phase(Phase::scanning);
+        EXPECT_EQ(test.opened_at, 460800U);
+    }(*this));
+}
+
+TEST_F(DeviceTest, LooksAtTheHintedLineSpeedFirst) {
+    scanner.baud = 256000;
+    make_device({.baud_hints = {256000}, .retry_delay = 1ms});
+    play(until_phase(Phase::scanning));
+    EXPECT_EQ(opened_at, 256000U);
+}
+
+TEST_F(DeviceTest, TalksTheLidarIntoTheLineSpeedThatWasAskedFor) {
+    scanner.info.firmware_minor = 30;
+    scanner.negotiates = true;
+    make_device({.baud = 230400, .retry_delay = 1ms});
+    scanner.baud = 115200;
+    play(until_phase(Phase::scanning));
+    EXPECT_EQ(device->state().line.baud, 230400U);
+    EXPECT_EQ(scanner.baud, 230400U);
+}
+
+TEST_F(DeviceTest, UsesTheLidarsOwnLineSpeedIfItCannotBeTalkedIntoAnother) {
+    make_device({.baud = 230400, .retry_delay = 1ms});
+    play(until_phase(Phase::scanning));
+    EXPECT_EQ(device->state().line.baud, 115200U);
+}
+
+TEST_F(DeviceTest, ANetworkHasNoLineSpeedToFind) {
+    line.baud = 0;
+    make_device();
+    play(until_phase(Phase::scanning));
+    EXPECT_EQ(device->state().line.baud, 0U);
+}
+
+TEST_F(DeviceTest, TellsTheSpeedOfTheRotationAndTheStateOfTheLine) {
+    make_device({.retry_delay = 1ms, .report_interval = 0ms});
+    play(until([this] { return sweeps.size() >= 2; }));
+    EXPECT_EQ(device->state().rotation.control, SpeedControl::fixed);
+    EXPECT_EQ(device->state().line.samples, 3U * 360U);
+    EXPECT_GE(device->state().line.bytes, 3U * 360U * 5U);
+}
+
+TEST_F(DeviceTest, RefusesASpeedThatCannotBeSet) {
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);
+        EXPECT_EQ(test.device->set_speed(7.0).error().code, errc::fixed_speed);
+        EXPECT_EQ(test.device->set_speed(-1.0).error().code, errc::no_such_speed);
+        EXPECT_TRUE(test.device->set_speed(0.0));
+    }(*this));
+}
+
+TEST_F(DeviceTest, WarnsThatASpeedAskedForAtTheStartCannotBeSet) {
+    make_device({.speed_hz = 7.0, .retry_delay = 1ms});
+    play(until_phase(Phase::scanning));
+    EXPECT_THAT(device->state().rotation.warning, HasSubstr("cannot be changed"));
+}
+
+TEST_F(DeviceTest, TellsAnAccessoryBoardTheDutyAlsoInMidScan) {
+    scanner.info.model = 0x28;
+    scanner.board = protocol::AccessoryBoard{true};
+    scanner.turns_at_start = 1;
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);
+        EXPECT_THAT(test.scanner.requests, Contains(protocol::set_motor_pwm_request(660)));
+        EXPECT_TRUE(test.device->set_speed(5.0));
+        EXPECT_EQ(test.device->state().rotation.wanted_hz, 5.0);
+        test.scanner.send_turn();
+        test.scanner.send_turn();
+        co_await test.until([&test] { return test.sweeps.size() >= 2; });
+        EXPECT_EQ(test.device->state().phase, Phase::scanning);
+    }(*this));
+    EXPECT_THAT(scanner.requests, Contains(protocol::set_motor_pwm_request(330)));
+    EXPECT_EQ(scanner.requests.back(), protocol::set_motor_pwm_request(0));
+}
+
+TEST_F(DeviceTest, TellsALidarThatRegulatesItsSpeedTheRpm) {
+    scanner.info.model = 0x61;
+    scanner.list_modes();
+    make_device({.mode = "Standard", .speed_hz = 7.0, .retry_delay = 1ms});
+    play(until_phase(Phase::scanning));
+    EXPECT_THAT(scanner.requests, Contains(protocol::motor_rpm_request(420)));
+    EXPECT_EQ(scanner.requests.back(), protocol::motor_rpm_request(0));
+    EXPECT_EQ(scanner.count(Command::set_motor_pwm), 0U);
+}
+
+TEST_F(DeviceTest, LeavesTheMotorOfALidarThatSpinsByItselfAlone) {
+    scanner.info.model = 0x41;
+    make_device();
+    play(until_phase(Phase::scanning));
+    EXPECT_EQ(scanner.count(Command::set_motor_pwm), 0U);
+    EXPECT_EQ(scanner.count(Command::motor_rpm), 0U);
+    EXPECT_EQ(scanner.count(Command::get_acc_board_flag), 0U);
 }
 
 TEST_F(DeviceTest, ShuttingDownEndsTheWaitOfACommand) {

@@ -1,0 +1,123 @@
+// What the users of a lidar can have it do, and the waits until it has done so.
+#include "driver/device/advice.hpp"
+#include "driver/device/device.hpp"
+#include "driver/device/error.hpp"
+
+#include <utility>
+
+namespace sweepcast::device {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+constexpr auto start_limit = 10s;
+constexpr auto stop_limit = 3s;
+/// Booting takes up to 15 s.
+constexpr auto reset_limit = 15s + start_limit;
+
+}  // namespace
+
+asio::awaitable<Result<void, Problem>> Device::start(std::string mode) {
+    if (!mode.empty() && !state_.modes.empty() && find_mode(state_.modes, mode) == nullptr) {
+        co_return unknown_mode(mode, state_.modes);
+    }
+    const bool other_mode = !mode.empty() && mode != wanted_.mode;
+    if (other_mode) {
+        wanted_.mode = std::move(mode);
+    }
+    if (!std::exchange(wanted_.scanning, true) || other_mode) {
+        ++wanted_.command;
+    }
+    co_return co_await settle(
+        [this] {
+            const auto* mode_wanted = wanted_mode();
+            return state_.phase == Phase::scanning && mode_wanted != nullptr &&
+                   mode_wanted->name == state_.mode;
+        },
+        start_limit
+    );
+}
+
+asio::awaitable<Result<void, Problem>> Device::set_mode(std::string mode) {
+    if (wanted_.scanning) {
+        co_return co_await start(std::move(mode));
+    }
+    const auto* found = find_mode(state_.modes, mode);
+    if (found == nullptr && !state_.modes.empty()) {
+        co_return unknown_mode(mode, state_.modes);
+    }
+    wanted_.mode = std::move(mode);
+    if (found != nullptr) {
+        state_.mode = found->name;
+        tell_state();
+    }
+    co_return Result<void, Problem>{};
+}
+
+Result<void, Problem> Device::set_speed(double hz) {
+    if (auto problem = speed_problem(hz, motor_, state_.info.has_value())) {
+        return std::move(*problem);
+    }
+    wanted_.speed_hz = hz;
+    regulator_.want(hz);
+    state_.rotation = regulator_.rotation();
+    tell_state();
+    return {};
+}
+
+asio::awaitable<Result<void, Problem>> Device::stop() {
+    if (std::exchange(wanted_.scanning, false)) {
+        ++wanted_.command;
+    }
+    co_return co_await settle(
+        [this] {
+            return state_.phase == Phase::idle || state_.phase == Phase::failed ||
+                   state_.phase == Phase::protection_stop || state_.phase == Phase::disconnected;
+        },
+        stop_limit
+    );
+}
+
+asio::awaitable<Result<void, Problem>> Device::reset() {
+    if (!std::exchange(wanted_.reset, true)) {
+        ++wanted_.command;
+    }
+    co_return co_await settle([this] { return !wanted_.reset && settled(); }, reset_limit);
+}
+
+/// Waits until a command has taken effect, or cannot any more.
+asio::awaitable<Result<void, Problem>>
+Device::settle(std::function<bool()> reached, std::chrono::milliseconds limit) {
+    const auto command = wanted_.command;
+    const auto version = state_version_;
+    const auto deadline = Clock::now() + limit;
+    if (!reached()) {
+        poke();
+    }
+    while (!reached()) {
+        if (wanted_.shutdown) {
+            co_return advice(errc::shutting_down);
+        }
+        if (wanted_.command != command) {
+            co_return advice(errc::superseded);
+        }
+        const bool failed = state_.phase == Phase::failed || state_.phase == Phase::protection_stop;
+        if (failed && state_version_ != version) {
+            co_return Problem{make_error_code(errc::not_ready), state_.cause, state_.hint};
+        }
+        if (!state_.modes.empty() && wanted_mode() == nullptr) {
+            // Asked for before it was known which modes there are.
+            co_return unknown_mode(std::exchange(wanted_.mode, ""), state_.modes);
+        }
+        const bool changed = co_await changed_.wait_until(deadline);
+        if (!changed && !reached()) {
+            co_return not_ready(state_.phase);
+        }
+    }
+    co_return Result<void, Problem>{};
+}
+
+}  // namespace sweepcast::device
