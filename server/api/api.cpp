@@ -28,6 +28,7 @@ const Api::Route Api::routes[] = {
     {"GET", "/api/v1/lidars", nullptr, &Api::list_lidars},
     {"GET", "/api/v1/lidars/", "", &Api::get_lidar},
     {"GET", "/api/v1/lidars/", "/scan", &Api::latest_scan},
+    {"PATCH", "/api/v1/lidars/", "", &Api::update},
     {"POST", "/api/v1/lidars/", "/start", &Api::start},
     {"POST", "/api/v1/lidars/", "/stop", &Api::stop},
     {"POST", "/api/v1/lidars/", "/reset", &Api::reset},
@@ -150,6 +151,38 @@ asio::awaitable<Response> Api::reset(const Request&, const std::string& id) cons
         co_return lidar_not_found(id);
     }
     co_return outcome_response(co_await control_.reset(lidar->number));
+}
+
+asio::awaitable<Response> Api::update(const Request& request, const std::string& id) const {
+    const auto lidar = hub_.find(id);
+    if (!lidar) {
+        co_return lidar_not_found(id);
+    }
+    v1::UpdateRequest message;
+    if (const auto parsed = from_json(request.body, message); !parsed) {
+        co_return error_response(
+            400,
+            "bad_body",
+            "the body is not an update: " + parsed.error(),
+            R"(send JSON such as {"speed_hz": 7} or {"mode": "Express"})"
+        );
+    }
+    if (!message.has_mode() && !message.has_speed_hz()) {
+        co_return error_response(
+            400,
+            "bad_body",
+            "the update changes nothing",
+            R"(send JSON such as {"speed_hz": 7} or {"mode": "Express"})"
+        );
+    }
+    LidarUpdate update;
+    if (message.has_mode()) {
+        update.mode = message.mode();
+    }
+    if (message.has_speed_hz()) {
+        update.speed_hz = message.speed_hz();
+    }
+    co_return outcome_response(co_await control_.update(lidar->number, std::move(update)));
 }
 
 asio::awaitable<Response> Api::latest_scan(const Request& request, const std::string& id) const {

@@ -8,9 +8,16 @@
 #include <boost/asio/awaitable.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace sweepcast::api {
+
+/// What to change of a lidar; what is not set stays.
+struct LidarUpdate {
+    std::optional<std::string> mode;  ///< name or id
+    std::optional<double> speed_hz;   ///< turns a second; 0: its usual speed
+};
 
 /// What the API can have done to a lidar, by its number. May be called on any worker.
 class LidarControl {
@@ -20,6 +27,7 @@ public:
     virtual boost::asio::awaitable<Outcome> start(std::uint32_t lidar, std::string mode) = 0;
     virtual boost::asio::awaitable<Outcome> stop(std::uint32_t lidar) = 0;
     virtual boost::asio::awaitable<Outcome> reset(std::uint32_t lidar) = 0;
+    virtual boost::asio::awaitable<Outcome> update(std::uint32_t lidar, LidarUpdate update) = 0;
 };
 
 /// The API as seen from one worker: what it tells comes from that worker's share of the hub.
@@ -41,6 +49,7 @@ private:
     boost::asio::awaitable<Response> start(const Request&, const std::string& id) const;
     boost::asio::awaitable<Response> stop(const Request&, const std::string& id) const;
     boost::asio::awaitable<Response> reset(const Request&, const std::string& id) const;
+    boost::asio::awaitable<Response> update(const Request&, const std::string& id) const;
     boost::asio::awaitable<Response> latest_scan(const Request&, const std::string& id) const;
     boost::asio::awaitable<Response> healthz(const Request&, const std::string& id) const;
 

@@ -21,6 +21,8 @@ struct Mapping {
 
 constexpr std::array mappings{
     Mapping{device::errc::unknown_mode, 400, "unknown_mode"},
+    Mapping{device::errc::no_such_speed, 400, "no_such_speed"},
+    Mapping{device::errc::fixed_speed, 409, "fixed_speed"},
     Mapping{device::errc::not_ready, 503, "lidar_not_ready"},
     Mapping{device::errc::superseded, 409, "superseded"},
     Mapping{device::errc::shutting_down, 503, "shutting_down"},

@@ -33,10 +33,12 @@ const char* text(protocol::HealthStatus status) {
     return "unknown";
 }
 
-void print(const std::string& port, const device::Identity& identity) {
+void print(const std::string& port, const device::Probed& probed) {
+    const auto& identity = probed.identity;
     const auto& info = identity.info;
     fmt::print("port      {}\n", port);
-    fmt::print("model     {}\n", protocol::model_name(info.model));
+    fmt::print("baud      {}\n", probed.baud > 0 ? std::to_string(probed.baud) : "none, a network");
+    fmt::print("model     {}\n", device::shown_name(identity));
     fmt::print("serial    {}\n", protocol::serial_text(info.serial));
     fmt::print("firmware  {}.{:02}\n", info.firmware_major, info.firmware_minor);
     fmt::print("hardware  {}\n", info.hardware);
@@ -46,45 +48,58 @@ void print(const std::string& port, const device::Identity& identity) {
         identity.health.code != 0 ? fmt::format(", code {:#06x}", identity.health.code) : ""
     );
     for (const auto& mode : identity.modes) {
-        fmt::print("mode      {}: {:.0f} samples/s\n", mode.name, mode.samples_per_second());
+        fmt::print(
+            "mode      {}: {:.0f} samples/s{}{}\n",
+            mode.name,
+            mode.samples_per_second(),
+            mode.max_distance_mm > 0 ? fmt::format(", {:.0f} m", mode.max_distance_mm / 1000) : "",
+            mode.typical ? ", recommended" : ""
+        );
     }
 }
 
-int probe(const std::string& port, std::uint32_t baud) {
+int probe(const std::string& port) {
+    auto url = link::parse_link_url(port);
+    if (!url) {
+        return report(url.error());
+    }
     asio::io_context context;
     auto asked = asio::co_spawn(
         context,
-        device::probe(context.get_executor(), port, baud),
+        device::probe(context.get_executor(), std::move(*url), {}),
         asio::use_future
     );
     context.run();
-    const auto identity = asked.get();
-    if (!identity) {
-        return report(identity.error());
+    const auto probed = asked.get();
+    if (!probed) {
+        return report(probed.error());
     }
-    print(port, *identity);
+    print(port, *probed);
     return 0;
 }
 
 }  // namespace
 
 void add_probe_command(CLI::App& app, int& exit_code) {
-    struct Arguments {
-        std::string port;
-        std::uint32_t baud{device::default_baud};
-    };
-    auto arguments = std::make_shared<Arguments>();
+    auto port = std::make_shared<std::string>();
     auto& command = *app.add_subcommand(
         "probe",
         "Say which lidar is at a port, if any (a running scan is ended)"
     );
-    command.add_option("port", arguments->port, "The serial port, e.g. /dev/ttyUSB0")->required();
-    command.add_option("--baud", arguments->baud, "Line speed in bits per second")
-        ->capture_default_str();
-    command.footer("Example:\n  sweepcast probe /dev/ttyUSB0");
-    command.callback([arguments, &exit_code] {
-        exit_code = probe(arguments->port, arguments->baud);
-    });
+    command
+        .add_option(
+            "port",
+            *port,
+            "A serial port (its line speed is found out, or ?baud=N), tcp://HOST or udp://HOST"
+        )
+        ->required();
+    command.footer(
+        "Examples:\n"
+        "  sweepcast probe /dev/ttyUSB0\n"
+        "  sweepcast probe '/dev/ttyUSB0?baud=256000'\n"
+        "  sweepcast probe udp://192.168.11.2"
+    );
+    command.callback([port, &exit_code] { exit_code = probe(*port); });
 }
 
 }  // namespace sweepcast::cli

@@ -1,6 +1,7 @@
 // `sweepcast serve`: the main job. Reads the options, finds the lidars, runs the gateway until told
 // to stop.
 #include "driver/device/probe.hpp"
+#include "driver/link/port_list.hpp"
 #include "server/cli/command.hpp"
 #include "server/cli/descriptors.hpp"
 #include "server/cli/stop_signals.hpp"
@@ -45,7 +46,14 @@ asio::awaitable<void> find_lidars(
     std::shared_ptr<spdlog::logger> log,
     std::vector<std::string>& found
 ) {
-    found = co_await device::discover(executor, log);
+    std::vector<std::string> paths;
+    for (const auto& port : link::list_candidate_ports()) {
+        paths.push_back(port.path);
+    }
+    const auto no_hints = [](const std::string&) { return std::vector<std::uint32_t>(); };
+    for (auto& lidar : co_await device::discover(executor, paths, no_hints, log)) {
+        found.push_back(std::move(lidar.path));
+    }
 }
 
 /// The lidars in these texts; a virtual one if there are none.
@@ -174,7 +182,7 @@ void add_serve_command(CLI::App& app, int& exit_code) {
     command.add_option(
         "--mode",
         arguments->mode,
-        "Scan mode, by name; without it each lidar's fastest"
+        "Scan mode, by name or id; without it the one that each lidar recommends"
     );
     command.add_flag("--idle", arguments->idle, "Do not start to scan until asked to");
     command.add_option("--threads", arguments->threads, "Threads for lidars and clients")

@@ -1,6 +1,9 @@
 #include "server/gateway/gateway.hpp"
 
 #include "driver/device/advice.hpp"
+    place.open_link = [executor, way](std::uint32_t baud) {
+        return link::open_link(executor, way, baud);
+    };
 #include "driver/link/open_link.hpp"
 #include "server/http/http_session.hpp"
 #include "server/net/endpoint.hpp"
@@ -70,6 +73,19 @@ command(ManagedLidar& lidar, asio::awaitable<Result<void, Problem>> order) {
         co_return obeying.snapshot();
     };
     co_return co_await async::run_on(lidar.worker().executor(), obey(lidar, std::move(order)));
+}
+
+/// Changes what is given. A speed that is refused changes nothing.
+asio::awaitable<Result<void, Problem>> apply(device::Device& device, api::LidarUpdate update) {
+    if (update.speed_hz) {
+        if (auto set = device.set_speed(*update.speed_hz); !set) {
+            co_return set.error();
+        }
+    }
+    if (update.mode) {
+        co_return co_await device.set_mode(*update.mode);
+    }
+    co_return Result<void, Problem>{};
 }
 
 asio::awaitable<void> serve_tcp(
@@ -172,7 +188,7 @@ Result<void, Problem> Gateway::add_lidars(const MakeLogger& make_logger) {
         auto log = make_logger("lidar " + where->port_name);
         lidars_.push_back(std::make_unique<ManagedLidar>(
             std::move(*where),
-            options_.device,
+            options_for(url),
             worker,
             *hub_,
             ids_,
@@ -180,6 +196,20 @@ Result<void, Problem> Gateway::add_lidars(const MakeLogger& make_logger) {
         ));
     }
     return {};
+}
+
+/// The device's options, with what the lidar's own URL says of them.
+device::DeviceOptions Gateway::options_for(const LidarUrl& url) const {
+    auto options = options_.device;
+    if (!url.mode.empty()) {
+        options.mode = url.mode;
+    }
+    options.speed_hz = url.hz.value_or(options.speed_hz);
+    const auto* way = std::get_if<link::LinkUrl>(&url.where);
+    if (way != nullptr && std::holds_alternative<link::SerialPlace>(way->where)) {
+        options.baud = std::get<link::SerialPlace>(way->where).baud;
+    }
+    return options;
 }
 
 /// Where a lidar is and how to open it; starts the virtual ones.
@@ -201,10 +231,16 @@ Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make
         way = std::get<link::LinkUrl>(url.where);
     }
     const auto executor = workers_[(number - 1) % workers_.size()]->executor();
+<<<<<<< HEAD
     place.open_link = [executor, way](std::uint32_t baud) {
         const auto* serial = std::get_if<link::SerialPlace>(&way.where);
         return link::open_link(executor, way, serial ? serial->baud.value_or(baud) : baud);
     };
+=======
+    place.open_link = [executor,
+                       where = link::LinkUrl{path, link::SerialPlace{path, {}}}](std::uint32_t baud
+                      ) { return link::open_link(executor, where, baud); };
+>>>>>>> 373fb24 (api: PATCH changes mode and speed; probe finds the line speed and takes URLs)
     return place;
 }
 
@@ -262,6 +298,12 @@ asio::awaitable<api::LidarControl::Outcome> Gateway::start(std::uint32_t lidar, 
 asio::awaitable<api::LidarControl::Outcome> Gateway::stop(std::uint32_t lidar) {
     auto& managed = *lidars_.at(lidar - 1);
     co_return co_await command(managed, managed.device().stop());
+}
+
+asio::awaitable<api::LidarControl::Outcome>
+Gateway::update(std::uint32_t lidar, api::LidarUpdate update) {
+    auto& managed = *lidars_.at(lidar - 1);
+    co_return co_await command(managed, apply(managed.device(), std::move(update)));
 }
 
 asio::awaitable<api::LidarControl::Outcome> Gateway::reset(std::uint32_t lidar) {

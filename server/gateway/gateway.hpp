@@ -60,6 +60,7 @@ private:
     Gateway(GatewayOptions options, const MakeLogger& make_logger);
 
     Result<void, Problem> add_lidars(const MakeLogger& make_logger);
+    [[nodiscard]] device::DeviceOptions options_for(const LidarUrl& url) const;
     Result<LidarPlace, Problem>
     place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make_logger);
     Result<void, Problem> listen(const MakeLogger& make_logger);
@@ -69,6 +70,7 @@ private:
     boost::asio::awaitable<Outcome> start(std::uint32_t lidar, std::string mode) override;
     boost::asio::awaitable<Outcome> stop(std::uint32_t lidar) override;
     boost::asio::awaitable<Outcome> reset(std::uint32_t lidar) override;
+    boost::asio::awaitable<Outcome> update(std::uint32_t lidar, api::LidarUpdate update) override;
 
     GatewayOptions options_;
     std::shared_ptr<spdlog::logger> log_;

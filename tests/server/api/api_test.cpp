@@ -37,6 +37,13 @@ public:
         co_return note("reset " + std::to_string(lidar));
     }
 
+    asio::awaitable<Outcome> update(std::uint32_t lidar, LidarUpdate update) override {
+        co_return note(
+            "update " + std::to_string(lidar) + " mode " + update.mode.value_or("-") + " speed " +
+            (update.speed_hz ? std::to_string(*update.speed_hz) : "-")
+        );
+    }
+
     Outcome note(const std::string& order) {
         orders.push_back(order);
         if (problem) {
@@ -100,6 +107,44 @@ protected:
     RecordingControl control;
     Api api{hub, control};
 };
+
+TEST_F(ApiTest, PatchChangesWhatIsGiven) {
+    EXPECT_EQ(ask("PATCH", "/api/v1/lidars/A0E1C2D3", R"({"speed_hz": 7})").status, 200);
+    EXPECT_EQ(ask("PATCH", "/api/v1/lidars/A0E1C2D3", R"({"mode": "2"})").status, 200);
+    EXPECT_EQ(
+        ask("PATCH", "/api/v1/lidars/A0E1C2D3", R"({"mode": "Boost", "speedHz": 0})").status,
+        200
+    );
+    EXPECT_THAT(
+        control.orders,
+        ElementsAre(
+            "update 1 mode - speed 7.000000",
+            "update 1 mode 2 speed -",
+            "update 1 mode Boost speed 0.000000"
+        )
+    );
+}
+
+TEST_F(ApiTest, APatchThatSaysNothingIsRefused) {
+    for (const auto* const body : {"", "{}", "[]", R"({"speed": 7})", R"({"speed_hz": "fast"})"}) {
+        const auto response = ask("PATCH", "/api/v1/lidars/A0E1C2D3", body);
+        EXPECT_EQ(response.status, 400) << body;
+        EXPECT_EQ(error_in(response).code(), "bad_body") << body;
+        EXPECT_THAT(error_in(response).hint(), HasSubstr("speed_hz"));
+    }
+    EXPECT_TRUE(control.orders.empty());
+}
+
+TEST_F(ApiTest, APatchOfASpeedThatCannotBeIsRefusedAsTheDeviceSays) {
+    control.problem = Problem{make_error_code(device::errc::fixed_speed), "it cannot", "do not"};
+    const auto fixed = ask("PATCH", "/api/v1/lidars/A0E1C2D3", R"({"speed_hz": 7})");
+    EXPECT_EQ(fixed.status, 409);
+    EXPECT_EQ(error_in(fixed).code(), "fixed_speed");
+    control.problem->code = make_error_code(device::errc::no_such_speed);
+    const auto beyond = ask("PATCH", "/api/v1/lidars/A0E1C2D3", R"({"speed_hz": 70})");
+    EXPECT_EQ(beyond.status, 400);
+    EXPECT_EQ(error_in(beyond).code(), "no_such_speed");
+}
 
 TEST_F(ApiTest, ListsTheLidars) {
     const auto response = ask("GET", "/api/v1/lidars");
