@@ -83,6 +83,9 @@ void ScanReader::account_for(std::size_t bytes) {
         case protocol::DecodeEventKind::bytes_skipped:
             line_->skipped_bytes += event.count;
             break;
+        case protocol::DecodeEventKind::packets_lost:
+            line_->lost_packets += event.count;
+            break;
         case protocol::DecodeEventKind::encoder_reset:
         case protocol::DecodeEventKind::scan_reset:
             break;

@@ -1,9 +1,6 @@
 #include "server/gateway/gateway.hpp"
 
 #include "driver/device/advice.hpp"
-    place.open_link = [executor, way](std::uint32_t baud) {
-        return link::open_link(executor, way, baud);
-    };
 #include "driver/link/open_link.hpp"
 #include "server/http/http_session.hpp"
 #include "server/net/endpoint.hpp"
@@ -178,6 +175,9 @@ Result<void, Problem> Gateway::listen(const MakeLogger& make_logger) {
 }
 
 Result<void, Problem> Gateway::add_lidars(const MakeLogger& make_logger) {
+    if (auto problem = name_clash(options_.lidars)) {
+        return std::move(*problem);
+    }
     for (const auto& url : options_.lidars) {
         const auto number = static_cast<std::uint32_t>(lidars_.size() + 1);
         auto where = place(url, number, make_logger);
@@ -217,8 +217,16 @@ Result<LidarPlace, Problem>
 Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make_logger) {
     // Unique from the start, so that the name goes on meaning this lidar once it has its serial
     // number.
-    const auto name = ids_.claim(number, port_name(url), port_name(url));
-    LidarPlace place{number, url.text, name, false, url.is_stand_in, {}};
+    const auto& wished = url.name.empty() ? port_name(url) : url.name;
+    const auto name = ids_.claim(number, wished, wished);
+    LidarPlace place{
+        .number = number,
+        .url = url.text,
+        .name = url.name,
+        .port_name = name,
+        .is_virtual = false,
+        .is_stand_in = url.is_stand_in,
+        .open_link = {}};
     link::LinkUrl way;
     if (const auto* wanted = std::get_if<VirtualLidarUrl>(&url.where)) {
         auto port = virtual_lidars_.add(*wanted, number, make_logger(place.port_name));
@@ -231,16 +239,9 @@ Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make
         way = std::get<link::LinkUrl>(url.where);
     }
     const auto executor = workers_[(number - 1) % workers_.size()]->executor();
-<<<<<<< HEAD
     place.open_link = [executor, way](std::uint32_t baud) {
-        const auto* serial = std::get_if<link::SerialPlace>(&way.where);
-        return link::open_link(executor, way, serial ? serial->baud.value_or(baud) : baud);
+        return link::open_link(executor, way, baud);
     };
-=======
-    place.open_link = [executor,
-                       where = link::LinkUrl{path, link::SerialPlace{path, {}}}](std::uint32_t baud
-                      ) { return link::open_link(executor, where, baud); };
->>>>>>> 373fb24 (api: PATCH changes mode and speed; probe finds the line speed and takes URLs)
     return place;
 }
 

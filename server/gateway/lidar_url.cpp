@@ -147,4 +147,24 @@ std::string port_name(const LidarUrl& url) {
     return "virtual-" + std::get<VirtualLidarUrl>(url.where).model;
 }
 
+std::optional<Problem> name_clash(const std::vector<LidarUrl>& lidars) {
+    for (auto lidar = lidars.begin(); lidar != lidars.end(); ++lidar) {
+        const auto same = std::find_if(lidars.begin(), lidar, [&](const LidarUrl& earlier) {
+            return !lidar->name.empty() && earlier.name == lidar->name;
+        });
+        if (same != lidar) {
+            return Problem{
+                make_error_code(boost::system::errc::invalid_argument),
+                fmt::format(
+                    "two lidars are named \"{}\": {} and {}",
+                    lidar->name,
+                    same->text,
+                    lidar->text
+                ),
+                "give each a name of its own, or none: it then goes by its serial number"};
+        }
+    }
+    return std::nullopt;
+}
+
 }  // namespace sweepcast::gateway

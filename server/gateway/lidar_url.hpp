@@ -43,4 +43,7 @@ struct LidarUrl {
 /// host, or "virtual-a1m8".
 [[nodiscard]] std::string port_name(const LidarUrl& url);
 
+/// What is wrong with the names that users gave these lidars, if anything: each may be given once.
+[[nodiscard]] std::optional<Problem> name_clash(const std::vector<LidarUrl>& lidars);
+
 }  // namespace sweepcast::gateway

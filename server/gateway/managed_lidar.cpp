@@ -61,14 +61,14 @@ void ManagedLidar::on_state(const device::DeviceState& state) {
     hub_.publish(hub::StateNews{snapshot_, stream::state_message(*snapshot_)});
 }
 
-/// The port's name until the lidar is identified, then its serial number; anew only for another
-/// lidar.
+/// The name its user gave it, else the port's until the lidar is identified, then its serial
+/// number; anew only for another lidar.
 void ManagedLidar::claim_id(const std::optional<protocol::DeviceInfo>& info) {
     const auto serial = info ? protocol::serial_text(info->serial) : std::string();
     if (id_.empty()) {
         id_ = place_.port_name;
     }
-    if (!serial.empty() && serial != named_for_) {
+    if (place_.name.empty() && !serial.empty() && serial != named_for_) {
         named_for_ = serial;
         id_ = ids_.claim(place_.number, protocol::short_serial_text(info->serial), serial);
     }

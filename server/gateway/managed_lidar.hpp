@@ -21,6 +21,7 @@ namespace sweepcast::gateway {
 struct LidarPlace {
     std::uint32_t number{};
     std::string url;
+    std::string name;  ///< that its user gave it; empty: it goes by its serial number
     std::string port_name;
     bool is_virtual{};
     bool is_stand_in{};

@@ -136,6 +136,29 @@ INSTANTIATE_TEST_SUITE_P(
     )
 );
 
+TEST(NameClash, IsTheSameNameTwice) {
+    const std::vector<LidarUrl> lidars{
+        *parse_lidar_url("/dev/ttyUSB0?name=front"),
+        *parse_lidar_url("/dev/ttyUSB1"),
+        *parse_lidar_url("/dev/ttyUSB2"),
+        *parse_lidar_url("udp://192.168.11.2?name=front")};
+    const auto problem = name_clash(lidars);
+    ASSERT_TRUE(problem);
+    EXPECT_NE(problem->cause.find("front"), std::string::npos);
+    EXPECT_NE(problem->cause.find("/dev/ttyUSB0"), std::string::npos);
+    EXPECT_NE(problem->cause.find("udp://192.168.11.2"), std::string::npos);
+}
+
+TEST(NameClash, IsNoneBetweenNamesThatDifferOrAreNotGiven) {
+    const std::vector<LidarUrl> lidars{
+        *parse_lidar_url("/dev/ttyUSB0?name=front"),
+        *parse_lidar_url("/dev/ttyUSB1?name=back"),
+        *parse_lidar_url("/dev/ttyUSB2"),
+        *parse_lidar_url("/dev/ttyUSB3")};
+    EXPECT_FALSE(name_clash(lidars));
+    EXPECT_FALSE(name_clash({}));
+}
+
 TEST(ParseLidarUrl, TakesANameOfSixtyFourCharacters) {
     const std::string name(64, 'x');
     const auto url = parse_lidar_url("/dev/ttyUSB0?name=" + name);
