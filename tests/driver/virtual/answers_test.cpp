@@ -1,29 +1,14 @@
 // What a host asks and what a scanner answers, byte by byte: the dialogue of the vendor's SDK with
 // an A1.
 #include "tests/driver/virtual/fake_host.hpp"
+#include "tests/driver/virtual/hex.hpp"
 
 #include <gtest/gtest.h>
-
-#include <charconv>
-#include <string_view>
 
 namespace sweepcast::virtual_lidar {
 namespace {
 
 using namespace std::chrono_literals;
-
-Bytes from_hex(std::string_view text) {
-    Bytes bytes;
-    while (text.size() >= 2) {
-        if (text.front() != ' ') {
-            bytes.push_back(0);
-            std::from_chars(text.data(), text.data() + 2, bytes.back(), 16);
-            text.remove_prefix(2);
-        }
-        text.remove_prefix(text.empty() ? 0 : 1);
-    }
-    return bytes;
-}
 
 struct Dialogue {
     const char* name;
