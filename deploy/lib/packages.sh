@@ -10,6 +10,7 @@ run_packages=(
     pkg-config            # finds libzstd
     libboost1.81-dev      # never libboost-dev: that is 1.74, and the two cannot be installed side by side
     libboost-url1.81-dev
+    libboost-json1.81-dev
     libprotobuf-dev
     protobuf-compiler     # the schema, for C++ and for the page
     libzstd-dev

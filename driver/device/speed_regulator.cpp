@@ -12,7 +12,7 @@ namespace {
 constexpr double close_enough = 0.005;
 /// Below this no motor turns; a regulator that gets here could not come back.
 constexpr double least_duty = 60.0;
-/// A speed that is not met after so many revolutions will not be.
+/// A speed that is steady but not met after so many revolutions will not be.
 constexpr std::uint32_t patience = 60;
 
 std::uint16_t to_setting(double value, double least, double most) {
@@ -66,7 +66,8 @@ std::string SpeedRegulator::warning() const {
     }
     const bool beyond = (traits_.min_rpm > 0 && wanted_hz_ * 60.0 < traits_.min_rpm) ||
                         (traits_.max_rpm > 0 && wanted_hz_ * 60.0 > traits_.max_rpm);
-    const bool failed = seen_ >= patience && !speed_is_met(speed_.hz(), wanted_hz_);
+    const bool failed =
+        seen_ >= patience && speed_.steady() && !speed_is_met(speed_.hz(), wanted_hz_);
     if (failed && control == SpeedControl::duty && setting_ == full_duty) {
         return fmt::format(
             "the motor does not reach {:.1f} Hz even at full duty: check its 5 V supply, or want "

@@ -18,6 +18,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -35,6 +36,7 @@ struct ServeArguments {
     std::string mode;
     bool idle{};
     std::size_t threads{1};
+    std::string state_dir;
     std::string log_level{"info"};
 };
 
@@ -50,8 +52,8 @@ asio::awaitable<void> find_lidars(
     for (const auto& port : link::list_candidate_ports()) {
         paths.push_back(port.path);
     }
-    const auto no_hints = [](const std::string&) { return std::vector<std::uint32_t>(); };
-    for (auto& lidar : co_await device::discover(executor, paths, no_hints, log)) {
+    const auto hints = [](const std::string&) { return std::vector<std::uint32_t>(); };
+    for (auto& lidar : co_await device::discover(executor, paths, hints, log)) {
         found.push_back(std::move(lidar.path));
     }
 }
@@ -93,6 +95,9 @@ Result<gateway::GatewayOptions, Problem> to_options(const ServeArguments& argume
     options.threads = arguments.threads;
     options.device.scan_at_once = !arguments.idle;
     options.device.mode = arguments.mode;
+    options.memory_file = arguments.state_dir.empty()
+                              ? gateway::default_memory_file()
+                              : std::filesystem::path(arguments.state_dir) / "lidars.json";
     options.max_connections = most_connections(raise_descriptor_limit());
     return options;
 }
@@ -188,6 +193,12 @@ void add_serve_command(CLI::App& app, int& exit_code) {
     command.add_option("--threads", arguments->threads, "Threads for lidars and clients")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
+    command.add_option(
+        "--state-dir",
+        arguments->state_dir,
+        "Where the line speeds of lidars are remembered (default: $STATE_DIRECTORY, else "
+        "~/.local/state/sweepcast)"
+    );
     command.add_option("--log-level", arguments->log_level, "debug, info, warning or error")
         ->capture_default_str();
     command.footer(

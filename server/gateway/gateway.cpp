@@ -178,6 +178,11 @@ Result<void, Problem> Gateway::add_lidars(const MakeLogger& make_logger) {
     if (auto problem = name_clash(options_.lidars)) {
         return std::move(*problem);
     }
+    if (!options_.memory_file.empty()) {
+        if (const auto opened = memory_.open(options_.memory_file); !opened) {
+            log_->warn("{}: {}", opened.error().cause, opened.error().hint);
+        }
+    }
     for (const auto& url : options_.lidars) {
         const auto number = static_cast<std::uint32_t>(lidars_.size() + 1);
         auto where = place(url, number, make_logger);
@@ -192,6 +197,7 @@ Result<void, Problem> Gateway::add_lidars(const MakeLogger& make_logger) {
             worker,
             *hub_,
             ids_,
+            memory_,
             std::move(log)
         ));
     }
@@ -207,7 +213,10 @@ device::DeviceOptions Gateway::options_for(const LidarUrl& url) const {
     options.speed_hz = url.hz.value_or(options.speed_hz);
     const auto* way = std::get_if<link::LinkUrl>(&url.where);
     if (way != nullptr && std::holds_alternative<link::SerialPlace>(way->where)) {
-        options.baud = std::get<link::SerialPlace>(way->where).baud;
+        const auto& port = std::get<link::SerialPlace>(way->where);
+        options.baud = port.baud;
+        const auto hints = memory_.baud_hints(port.path);
+        options.baud_hints.insert(options.baud_hints.end(), hints.begin(), hints.end());
     }
     return options;
 }
@@ -224,6 +233,7 @@ Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make
         .url = url.text,
         .name = url.name,
         .port_name = name,
+        .serial_port = {},
         .is_virtual = false,
         .is_stand_in = url.is_stand_in,
         .open_link = {}};
@@ -237,6 +247,8 @@ Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make
         place.is_virtual = true;
     } else {
         way = std::get<link::LinkUrl>(url.where);
+        const auto* port = std::get_if<link::SerialPlace>(&way.where);
+        place.serial_port = port != nullptr ? port->path : "";
     }
     const auto executor = workers_[(number - 1) % workers_.size()]->executor();
     place.open_link = [executor, way](std::uint32_t baud) {

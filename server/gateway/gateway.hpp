@@ -4,6 +4,7 @@
 #include "driver/protocol/result.hpp"
 #include "server/api/api.hpp"
 #include "server/gateway/lidar_ids.hpp"
+#include "server/gateway/lidar_memory.hpp"
 #include "server/gateway/lidar_url.hpp"
 #include "server/gateway/managed_lidar.hpp"
 #include "server/gateway/virtual_lidars.hpp"
@@ -15,6 +16,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -27,6 +29,8 @@ struct GatewayOptions {
     boost::asio::ip::tcp::endpoint tcp;
     std::vector<LidarUrl> lidars;
     device::DeviceOptions device;
+    /// Where line speeds are remembered; empty: nowhere.
+    std::filesystem::path memory_file;
     /// Threads for lidars and clients.
     std::size_t threads{1};
     /// Most connections at a time, for HTTP and TCP each.
@@ -77,6 +81,7 @@ private:
     net::Workers workers_;
     std::unique_ptr<hub::Hub> hub_;
     LidarIds ids_;
+    LidarMemory memory_;
     VirtualLidars virtual_lidars_;
     std::vector<std::unique_ptr<ManagedLidar>> lidars_;
     std::vector<api::Api> apis_;  ///< one a worker

@@ -17,12 +17,14 @@ ManagedLidar::ManagedLidar(
     async::Worker& worker,
     hub::Hub& hub,
     LidarIds& ids,
+    LidarMemory& memory,
     std::shared_ptr<spdlog::logger> log
 )
     : place_(std::move(place))
     , worker_(worker)
     , hub_(hub)
     , ids_(ids)
+    , memory_(memory)
     , log_(std::move(log))
     , stopped_(ended_.get_future())
     , device_(worker.executor(), place_.open_link, std::move(options), *this, log_) {}
@@ -56,9 +58,25 @@ void ManagedLidar::on_state(const device::DeviceState& state) {
     snapshot->is_stand_in = place_.is_stand_in;
     snapshot->state = state;
     claim_id(state.info);
+    remember(state);
     snapshot->id = id_;
     snapshot_ = snapshot;
     hub_.publish(hub::StateNews{snapshot_, stream::state_message(*snapshot_)});
+}
+
+/// Remembers where the lidar is and how fast it speaks.
+void ManagedLidar::remember(const device::DeviceState& state) {
+    if (!state.info || state.line.baud == 0 || place_.serial_port.empty()) {
+        return;
+    }
+    const auto noted = memory_.note(
+        protocol::serial_text(state.info->serial),
+        place_.serial_port,
+        state.line.baud
+    );
+    if (!noted) {
+        log_->warn("{}: {}", noted.error().cause, noted.error().hint);
+    }
 }
 
 /// The name its user gave it, else the port's until the lidar is identified, then its serial

@@ -5,6 +5,7 @@
 #include "driver/device/device.hpp"
 #include "server/frame/frame_encoder.hpp"
 #include "server/gateway/lidar_ids.hpp"
+#include "server/gateway/lidar_memory.hpp"
 #include "server/hub/hub.hpp"
 
 #include <spdlog/logger.h>
@@ -23,6 +24,8 @@ struct LidarPlace {
     std::string url;
     std::string name;  ///< that its user gave it; empty: it goes by its serial number
     std::string port_name;
+    std::string
+        serial_port;  ///< its path, to remember the line speed by; empty: not to be remembered
     bool is_virtual{};
     bool is_stand_in{};
     device::OpenLink open_link;
@@ -37,6 +40,7 @@ public:
         async::Worker& worker,
         hub::Hub& hub,
         LidarIds& ids,
+        LidarMemory& memory,
         std::shared_ptr<spdlog::logger> log
     );
 
@@ -54,6 +58,7 @@ public:
 
 private:
     void on_state(const device::DeviceState& state) override;
+    void remember(const device::DeviceState& state);
     void claim_id(const std::optional<protocol::DeviceInfo>& info);
     void on_sweep(device::CapturedSweep sweep) override;
     boost::asio::awaitable<void> live();
@@ -62,6 +67,7 @@ private:
     async::Worker& worker_;
     hub::Hub& hub_;
     LidarIds& ids_;
+    LidarMemory& memory_;
     std::shared_ptr<spdlog::logger> log_;
     frame::FrameEncoder encoder_;
     hub::LidarSnapshotPtr snapshot_;

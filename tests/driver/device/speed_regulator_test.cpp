@@ -181,6 +181,27 @@ TEST(SpeedRegulatorTest, SaysThatFullDutyIsNotEnough) {
     EXPECT_THAT(regulator.rotation().warning, HasSubstr("full duty"));
 }
 
+TEST(SpeedRegulatorTest, DoesNotWarnWhileItCorrects) {
+    double factor = 1.0;
+    Motor motor([&factor](double duty) { return duty / 66.0 * factor; }, 0.5);
+    SpeedRegulator regulator(board());
+    (void)turns_to_settle(regulator, motor, 400);
+    factor = 0.8;
+    for (int turn = 0; turn < 100; ++turn) {
+        regulator.observe(motor.turn(regulator.setting()));
+        EXPECT_EQ(regulator.rotation().warning, "") << "turn " << turn;
+    }
+}
+
+TEST(SpeedRegulatorTest, DoesNotWarnOfAStoppedMotor) {
+    SpeedRegulator regulator(board());
+    for (int turn = 0; turn < 100; ++turn) {
+        regulator.observe(turn_at(10.0));
+    }
+    regulator.stopped();
+    EXPECT_EQ(regulator.rotation().warning, "");
+}
+
 TEST(SpeedRegulatorTest, TellsALidarThatRegulatesItselfTheRpm) {
     auto traits = board();
     traits.control = protocol::MotorControl::rpm;

@@ -1,0 +1,116 @@
+// LidarMemory: line speeds from one run to the next, and files that are not what they should be.
+#include "server/gateway/lidar_memory.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+namespace sweepcast::gateway {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class LidarMemoryTest : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string path = (fs::temp_directory_path() / "sweepcast-memory-XXXXXX").string();
+        ASSERT_NE(mkdtemp(path.data()), nullptr);
+        folder = path;
+        file = folder / "below" / "lidars.json";
+    }
+    void TearDown() override { fs::remove_all(folder); }
+
+    void put(const std::string& text) const {
+        fs::create_directories(file.parent_path());
+        std::ofstream(file) << text;
+    }
+
+    fs::path folder;
+    fs::path file;
+};
+
+TEST_F(LidarMemoryTest, RemembersOverARestart) {
+    LidarMemory first;
+    ASSERT_TRUE(first.open(file));
+    ASSERT_TRUE(first.note("AAAA", "/dev/ttyUSB0", 460800));
+    ASSERT_TRUE(first.note("BBBB", "/dev/ttyUSB1", 256000));
+    LidarMemory second;
+    ASSERT_TRUE(second.open(file));
+    EXPECT_THAT(second.baud_hints("/dev/ttyUSB0"), ElementsAre(460800, 256000));
+    EXPECT_THAT(second.baud_hints("/dev/ttyUSB1"), ElementsAre(256000, 460800));
+}
+
+TEST_F(LidarMemoryTest, AnUnknownPortGetsTheCommonestSpeedFirst) {
+    LidarMemory memory;
+    ASSERT_TRUE(memory.open(file));
+    ASSERT_TRUE(memory.note("AAAA", "/dev/ttyUSB0", 460800));
+    ASSERT_TRUE(memory.note("BBBB", "/dev/ttyUSB1", 256000));
+    ASSERT_TRUE(memory.note("CCCC", "/dev/ttyUSB2", 256000));
+    EXPECT_THAT(memory.baud_hints("/dev/ttyUSB9"), ElementsAre(256000, 460800));
+}
+
+TEST_F(LidarMemoryTest, FollowsALidarToAnotherPort) {
+    LidarMemory memory;
+    ASSERT_TRUE(memory.open(file));
+    ASSERT_TRUE(memory.note("AAAA", "/dev/ttyUSB0", 460800));
+    ASSERT_TRUE(memory.note("BBBB", "/dev/ttyUSB1", 256000));
+    ASSERT_TRUE(memory.note("AAAA", "/dev/ttyUSB1", 460800));
+    EXPECT_THAT(memory.baud_hints("/dev/ttyUSB1"), ElementsAre(460800, 256000));
+}
+
+TEST_F(LidarMemoryTest, WithoutAFileNothingIsRemembered) {
+    LidarMemory memory;
+    EXPECT_TRUE(memory.note("AAAA", "/dev/ttyUSB0", 460800));
+    EXPECT_THAT(memory.baud_hints("/dev/ttyUSB0"), IsEmpty());
+}
+
+class DamagedMemory : public LidarMemoryTest, public testing::WithParamInterface<const char*> {};
+
+TEST_P(DamagedMemory, IsToldAndBegunAnew) {
+    put(GetParam());
+    LidarMemory memory;
+    const auto opened = memory.open(file);
+    ASSERT_FALSE(opened);
+    EXPECT_THAT(opened.error().cause, HasSubstr("lidars.json"));
+    EXPECT_TRUE(memory.note("AAAA", "/dev/ttyUSB0", 460800));
+    EXPECT_TRUE(LidarMemory().open(file));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Texts,
+    DamagedMemory,
+    testing::Values("{", "[]", "null", "{\"lidars\": 3}", "\x01\x02", "{}")
+);
+
+TEST_F(LidarMemoryTest, EntriesThatMakeNoSenseAreLeftOut) {
+    put(R"({"lidars": [
+        null, 3, {}, {"serial": 1, "port": "p", "baud": 9600}, {"serial": "A", "port": "p"},
+        {"serial": "B", "port": "p", "baud": -1}, {"serial": "C", "port": "p", "baud": 1e99},
+        {"serial": "D", "port": "p", "baud": 256000}]})");
+    LidarMemory memory;
+    ASSERT_TRUE(memory.open(file));
+    EXPECT_THAT(memory.baud_hints("p"), ElementsAre(256000));
+}
+
+TEST_F(LidarMemoryTest, AFileTooLargeIsNotRead) {
+    put(std::string(300 * 1024, ' '));
+    EXPECT_THAT(LidarMemory().open(file).error().cause, HasSubstr("too large"));
+}
+
+TEST_F(LidarMemoryTest, AFolderInItsPlaceIsTold) {
+    fs::create_directories(file);
+    LidarMemory memory;
+    EXPECT_FALSE(memory.open(file));
+    const auto noted = memory.note("AAAA", "/dev/ttyUSB0", 460800);
+    ASSERT_FALSE(noted);
+    EXPECT_THAT(noted.error().hint, HasSubstr("--state-dir"));
+}
+
+}  // namespace
+}  // namespace sweepcast::gateway
