@@ -57,10 +57,14 @@ Device::Device(
 
 asio::awaitable<void> Device::run() {
     while (!wanted_.shutdown) {
+        if (examination_) {
+            co_await examine();
+            continue;
+        }
         const auto problem = co_await live_guarded();
         wanted_.reset = false;  // the next attempt begins from scratch anyway
-        if (wanted_.shutdown) {
-            break;
+        if (wanted_.shutdown || examination_) {
+            continue;
         }
         tell_failure(problem);
         set_phase(Phase::failed, problem);
@@ -73,6 +77,25 @@ void Device::shut_down() {
     wanted_.shutdown = true;
     poke();
     changed_.notify();  // whoever waits for a command to take effect need wait no more
+}
+
+/// Lets an examination have the port.
+asio::awaitable<void> Device::examine() {
+    using namespace asio::experimental::awaitable_operators;
+    set_phase(Phase::identifying, {{}, "being examined", ""});
+    try {
+        auto first = co_await (examination_->examine() || until_shutdown());
+        if (auto* diagnosis = std::get_if<0>(&first)) {
+            examination_->result = std::move(*diagnosis);
+        }
+    } catch (const boost::system::system_error&) {
+        examination_.reset();
+        throw;  // cancelled: the owner ends this life
+    } catch (const std::exception& failure) {
+        log_->error("the examination failed: {}", failure.what());
+    }
+    examination_.reset();
+    changed_.notify();
 }
 
 /// live(), with what must not happen (a broken invariant, no memory) made a failure like others.
@@ -121,7 +144,7 @@ asio::awaitable<void> Device::until_shutdown() {
 /// Identifies the lidar and does what is wanted of it, until the line breaks or it does not answer.
 asio::awaitable<Problem> Device::hold(Conversation& talk) {
     auto met = co_await meet(talk);
-    while (!met && met.error() == link::errc::interrupted && !wanted_.shutdown) {
+    while (!met && met.error() == link::errc::interrupted && !wanted_.shutdown && !examination_) {
         met = co_await meet(talk);
     }
     if (!met) {

@@ -6,6 +6,7 @@
 #include "driver/device/captured_sweep.hpp"
 #include "driver/device/conversation.hpp"
 #include "driver/device/device_state.hpp"
+#include "driver/device/diagnosis.hpp"
 #include "driver/device/identify.hpp"
 #include "driver/device/scan.hpp"
 #include "driver/device/speed_regulator.hpp"
@@ -38,6 +39,9 @@ public:
 /// Opens the device's port anew, at a line speed if it has one; called for every attempt.
 using OpenLink = std::function<
     boost::asio::awaitable<Result<std::unique_ptr<link::Link>, Problem>>(std::uint32_t baud)>;
+
+/// Examines the lidar and its port from outside.
+using Examine = std::function<boost::asio::awaitable<Diagnosis>()>;
 
 struct DeviceOptions {
     /// Start scanning as soon as the device is there.
@@ -97,6 +101,14 @@ public:
     /// when the speed is reached. Errors: errc::no_such_speed, fixed_speed.
     Result<void, Problem> set_speed(double hz);
 
+    /// Has `examine` look at a lidar that is not in hand, while the device keeps away from the
+    /// port; who asks meanwhile gets the same answer. Nothing if the lidar is in hand, or the
+    /// device is shutting down: its state tells all there is to tell.
+    boost::asio::awaitable<std::optional<Diagnosis>> diagnose(Examine examine);
+
+    /// Whether the lidar has been identified on the connection that is open.
+    [[nodiscard]] bool in_hand() const;
+
     [[nodiscard]] const DeviceState& state() const { return state_; }
 
 private:
@@ -110,6 +122,13 @@ private:
         std::uint64_t command{};
     };
 
+    /// An examination that was asked for.
+    struct Examination {
+        Examine examine;
+        std::optional<Diagnosis> result{};
+    };
+
+    boost::asio::awaitable<void> examine();
     boost::asio::awaitable<Problem> live_guarded();
     boost::asio::awaitable<Problem> live();
     boost::asio::awaitable<Result<std::unique_ptr<link::Link>, Problem>> open();
@@ -153,6 +172,7 @@ private:
     std::string told_failure_;  ///< the cause that the log was last told; empty once all is well
     std::string told_warning_;  ///< of the rotation
     link::Link* link_{};        ///< the open one, while there is one
+    std::shared_ptr<Examination> examination_;  ///< wanted or under way
     async::Notifier commanded_;
     async::Notifier changed_;
 };

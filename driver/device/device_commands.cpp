@@ -88,6 +88,26 @@ asio::awaitable<Result<void, Problem>> Device::reset() {
     co_return co_await settle([this] { return !wanted_.reset && settled(); }, reset_limit);
 }
 
+asio::awaitable<std::optional<Diagnosis>> Device::diagnose(Examine examine) {
+    if (in_hand()) {
+        co_return std::nullopt;
+    }
+    if (!examination_) {
+        examination_ = std::make_shared<Examination>(Examination{std::move(examine)});
+        poke();
+    }
+    const auto wanted = examination_;
+    while (examination_ == wanted && !wanted_.shutdown) {
+        co_await changed_.wait_until(Clock::time_point::max());
+    }
+    co_return wanted->result;
+}
+
+bool Device::in_hand() const {
+    return link_ != nullptr && state_.phase != Phase::identifying &&
+           state_.phase != Phase::failed && state_.phase != Phase::disconnected;
+}
+
 /// Waits until a command has taken effect, or cannot any more.
 asio::awaitable<Result<void, Problem>>
 Device::settle(std::function<bool()> reached, std::chrono::milliseconds limit) {

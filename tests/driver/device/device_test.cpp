@@ -31,6 +31,12 @@ using testing::HasSubstr;
 
 constexpr auto patience = 10s;
 
+Diagnosis a_diagnosis() {
+    Diagnosis diagnosis;
+    diagnosis.port = "here";
+    return diagnosis;
+}
+
 class DeviceTest : public testing::Test, public DeviceObserver {
 public:  // the tests' coroutines are lambdas, which inherit no access
     void on_state(const DeviceState& state) override {
@@ -517,6 +523,64 @@ TEST_F(DeviceTest, LeavesTheMotorOfALidarThatSpinsByItselfAlone) {
     EXPECT_EQ(scanner.count(Command::set_motor_pwm), 0U);
     EXPECT_EQ(scanner.count(Command::motor_rpm), 0U);
     EXPECT_EQ(scanner.count(Command::get_acc_board_flag), 0U);
+}
+
+TEST_F(DeviceTest, AnExaminationHasThePortToItself) {
+    scanner.answers = false;
+    make_device({.retry_delay = 1h});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::failed);
+        const auto diagnosis =
+            co_await test.device->diagnose([&test]() -> asio::awaitable<Diagnosis> {
+                EXPECT_FALSE(test.device->in_hand());
+                EXPECT_EQ(test.device->state().cause, "being examined");
+                test.scanner.answers = true;
+                co_return a_diagnosis();
+            });
+        EXPECT_TRUE(diagnosis);
+        EXPECT_EQ(diagnosis->port, "here");
+        co_await test.until_phase(Phase::scanning);  // at once, though the retry is an hour away
+    }(*this));
+}
+
+TEST_F(DeviceTest, ALidarInHandIsNotExaminedFromOutside) {
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);
+        const auto diagnosis = co_await test.device->diagnose([]() -> asio::awaitable<Diagnosis> {
+            ADD_FAILURE() << "the port is in use";
+            co_return Diagnosis{};
+        });
+        EXPECT_FALSE(diagnosis);
+    }(*this));
+}
+
+TEST_F(DeviceTest, AnExaminationInterruptsAnAttempt) {
+    scanner.answers = false;
+    make_device({.retry_delay = 1h});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::identifying);
+        const auto diagnosis = co_await test.device->diagnose([]() -> asio::awaitable<Diagnosis> {
+            co_return a_diagnosis();
+        });
+        EXPECT_TRUE(diagnosis);
+    }(*this));
+}
+
+TEST_F(DeviceTest, ShuttingDownEndsAnExamination) {
+    open_problem = Problem{make_error_code(errc::no_answer), "no such port", "plug it in"};
+    make_device({.retry_delay = 1h});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::failed);
+        const auto diagnosis =
+            co_await test.device->diagnose([&test]() -> asio::awaitable<Diagnosis> {
+                asio::post(test.context, [&test] { test.device->shut_down(); });
+                async::Notifier never(test.context.get_executor());
+                co_await never.wait_until(std::chrono::steady_clock::time_point::max());
+                co_return Diagnosis{};
+            });
+        EXPECT_FALSE(diagnosis);
+    }(*this));
 }
 
 TEST_F(DeviceTest, ShuttingDownEndsTheWaitOfACommand) {
