@@ -20,7 +20,7 @@ struct Rotation {
     double wanted_hz{};
     /// Mean of the last revolutions; 0 unless scanning.
     double measured_hz{};
-    /// The measured speed is within 2 % of the wanted one.
+    /// The measured speed is within 2 % of the wanted one, and has stopped changing.
     bool settled{};
     /// As the lidar says.
     double usual_hz{};

@@ -23,8 +23,9 @@ std::uint16_t to_setting(double value, double least, double most) {
 
 void SpeedRegulator::want(double hz) {
     wish_hz_ = hz;
-    speed_.forget();
-    seen_ = 0;
+    since_wish_ = 0;
+    since_setting_ = 0;
+    settled_ = false;
     switch (speed_control(traits_.control)) {
     case SpeedControl::fixed:
         wanted_hz_ = wish_hz_;
@@ -45,15 +46,33 @@ void SpeedRegulator::want(double hz) {
 
 void SpeedRegulator::observe(std::chrono::microseconds revolution) {
     speed_.add(revolution);
-    seen_ = std::min(seen_ + 1, patience);
-    if (speed_control(traits_.control) != SpeedControl::duty || !speed_.steady()) {
-        return;
+    since_wish_ = std::min(since_wish_ + 1, patience);
+    since_setting_ = std::min(since_setting_ + 1, patience);
+    // A speed that only passes the wanted one on its way to another is not settled.
+    settled_ = speed_is_met(speed_.hz(), wanted_hz_) && (settled_ || steady());
+    if (speed_control(traits_.control) == SpeedControl::duty && steady()) {
+        correct();
     }
+}
+
+void SpeedRegulator::stopped() {
+    speed_.forget();
+    since_wish_ = 0;
+    since_setting_ = 0;
+    settled_ = false;
+}
+
+/// Whether the motor turns as it was told and no longer changes its speed.
+bool SpeedRegulator::steady() const {
+    return since_setting_ >= Speedometer::most && speed_.steady();
+}
+
+void SpeedRegulator::correct() {
     const double ratio = wanted_hz_ / speed_.hz();
     const auto better = to_setting(setting_ * ratio, least_duty, full_duty);
     if (std::abs(ratio - 1.0) > close_enough && better != setting_) {
         setting_ = better;
-        speed_.forget();
+        since_setting_ = 0;
     }
 }
 
@@ -67,7 +86,7 @@ std::string SpeedRegulator::warning() const {
     const bool beyond = (traits_.min_rpm > 0 && wanted_hz_ * 60.0 < traits_.min_rpm) ||
                         (traits_.max_rpm > 0 && wanted_hz_ * 60.0 > traits_.max_rpm);
     const bool failed =
-        seen_ >= patience && speed_.steady() && !speed_is_met(speed_.hz(), wanted_hz_);
+        since_wish_ >= patience && steady() && !speed_is_met(speed_.hz(), wanted_hz_);
     if (failed && control == SpeedControl::duty && setting_ == full_duty) {
         return fmt::format(
             "the motor does not reach {:.1f} Hz even at full duty: check its 5 V supply, or want "
@@ -101,7 +120,7 @@ Rotation SpeedRegulator::rotation() const {
         .control = speed_control(traits_.control),
         .wanted_hz = wanted_hz_,
         .measured_hz = speed_.hz(),
-        .settled = speed_is_met(speed_.hz(), wanted_hz_),
+        .settled = settled_,
         .usual_hz = usual_is_known ? usual_hz() : 0.0,
         .min_hz = usual_is_known ? traits_.min_rpm / 60.0 : 0.0,
         .max_hz = usual_is_known ? traits_.max_rpm / 60.0 : 0.0,

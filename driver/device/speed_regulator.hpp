@@ -31,10 +31,7 @@ public:
     void observe(std::chrono::microseconds revolution);
 
     /// The motor was stopped: what was measured is no longer so.
-    void stopped() {
-        speed_.forget();
-        seen_ = 0;
-    }
+    void stopped();
 
     /// What to tell the motor to turn: rpm, or duty of full_duty; 0 where nothing can be told.
     [[nodiscard]] std::uint16_t setting() const { return setting_; }
@@ -45,13 +42,17 @@ public:
 private:
     [[nodiscard]] double usual_hz() const { return traits_.desired.rpm / 60.0; }
     [[nodiscard]] std::string warning() const;
+    [[nodiscard]] bool steady() const;
+    void correct();
 
     MotorTraits traits_;
     Speedometer speed_;
     double wish_hz_{};  ///< 0: none
     double wanted_hz_{};
     std::uint16_t setting_{};
-    std::uint32_t seen_{};  ///< revolutions since the wish
+    std::uint32_t since_wish_{};     ///< revolutions, counted up to a bound
+    std::uint32_t since_setting_{};  ///< likewise since the motor was told
+    bool settled_{};
 };
 
 }  // namespace sweepcast::device

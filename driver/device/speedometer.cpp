@@ -35,7 +35,7 @@ bool Speedometer::steady() const {
         return false;
     }
     const auto late = static_cast<double>(total(0, half).count());
-    const auto early = static_cast<double>(total(half, 2 * half).count());
+    const auto early = static_cast<double>(total(half, most).count());
     constexpr double tolerance = 0.004;
     return std::abs(late - early) <= tolerance * early;
 }

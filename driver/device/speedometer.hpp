@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 
 namespace sweepcast::device {
 
@@ -11,6 +12,9 @@ namespace sweepcast::device {
 /// arrival times (0.3 ms of 100), short enough to show a change within a second.
 class Speedometer {
 public:
+    /// So many revolutions count.
+    static constexpr std::uint32_t most = 6;
+
     /// Takes the time of one revolution in; one that is not positive is not counted.
     void add(std::chrono::microseconds revolution);
 
@@ -25,11 +29,11 @@ public:
     [[nodiscard]] bool steady() const;
 
 private:
-    static constexpr std::size_t half = 3;
+    static constexpr std::size_t half = most / 2;
 
     [[nodiscard]] std::chrono::microseconds total(std::size_t from, std::size_t to) const;
 
-    std::array<std::chrono::microseconds, 2 * half> last_{};  ///< the latest at the end
+    std::array<std::chrono::microseconds, most> last_{};  ///< the latest at the end
     std::size_t count_{};
 };
 

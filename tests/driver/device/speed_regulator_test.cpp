@@ -181,6 +181,15 @@ TEST(SpeedRegulatorTest, SaysThatFullDutyIsNotEnough) {
     EXPECT_THAT(regulator.rotation().warning, HasSubstr("full duty"));
 }
 
+TEST(SpeedRegulatorTest, IsNotSettledWhileThePassingSpeedIsTheWantedOne) {
+    SpeedRegulator regulator(board());
+    regulator.want(7.0);
+    for (double hz = 10.0; hz > 6.0; hz -= 0.05) {
+        regulator.observe(turn_at(hz));
+        EXPECT_FALSE(regulator.rotation().settled) << hz;
+    }
+}
+
 TEST(SpeedRegulatorTest, DoesNotWarnWhileItCorrects) {
     double factor = 1.0;
     Motor motor([&factor](double duty) { return duty / 66.0 * factor; }, 0.5);
