@@ -63,10 +63,32 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{{"watch", "tcp://127.0.0.1:1?lidar=X"}, "--lidar"},
         Mistake{{"watch", "tcp://[::1]:1"}, "curl http://[::1]:8080/healthz"},
         Mistake{{"watch", "tcp://127.0.0.1:1"}, "cannot connect to 127.0.0.1:1"},
+        Mistake{{"virtual", "--model", "z9"}, "a2m12"},
+        Mistake{{"virtual", "--fault", "noise"}, "noise=RATE"},
+        Mistake{{"virtual", "--listen", "nowhere"}, "tcp://127.0.0.1:20108"},
+        Mistake{{"serve", "--lidar", "virtual:a1m8?fault=nonsense"}, "protection-stop"},
         Mistake{{"probe", "/nonexistent"}, "/nonexistent"},
         Mistake{{"probe", "/etc/passwd"}, "/etc/passwd"}
     )
 );
+
+TEST(CommandLine, VirtualListsItsModels) {
+    for (const auto& arguments :
+         {std::vector<std::string>{"virtual", "--list-models"}, {"virtual", "--model", "list"}}) {
+        const auto outcome = call(arguments);
+        EXPECT_EQ(outcome.exit_code, 0);
+        for (const auto* part : {"a1m8", "a2m8-old", "1000000", "UltraDense", "0x86", "UDP"}) {
+            EXPECT_THAT(outcome.output, HasSubstr(part));
+        }
+    }
+}
+
+TEST(CommandLine, VirtualPrintsTheUrlItListensOn) {
+    Process lidar({program(), "virtual", "--model", "t1", "--listen", "127.0.0.1:0"});
+    EXPECT_THAT(lidar.wait_for_output("://"), StartsWith("udp://127.0.0.1:"));
+    lidar.signal(SIGINT);
+    EXPECT_EQ(lidar.wait(), 0);
+}
 
 TEST(CommandLine, ServeSaysThatItsAddressIsTaken) {
     GatewayProcess first({"--lidar", "virtual:a1m8"});
