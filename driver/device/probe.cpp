@@ -71,8 +71,10 @@ asio::awaitable<std::vector<Discovered>> discover(
     std::vector<Discovered> found;
     for (const auto& path : paths) {
         log->info("looking for a lidar on {}", path);
-        const auto probed =
-            co_await probe(executor, {path, link::SerialPlace{path, {}}}, hints(path));
+        // Named first: g++ 12 destroys such temporaries of a co_await twice.
+        link::LinkUrl url{path, link::SerialPlace{path, {}}};
+        auto port_hints = hints(path);
+        const auto probed = co_await probe(executor, std::move(url), std::move(port_hints));
         if (probed) {
             log->info("{}: {} at {} baud", path, shown_name(probed->identity), probed->baud);
             found.push_back({path, probed->baud});
