@@ -1,9 +1,8 @@
 // `sweepcast serve`: the main job. Reads the options, finds the lidars, runs the gateway until told
 // to stop.
-#include "driver/device/probe.hpp"
-#include "driver/link/port_list.hpp"
 #include "server/cli/command.hpp"
 #include "server/cli/descriptors.hpp"
+#include "server/cli/lidar_choice.hpp"
 #include "server/cli/stop_signals.hpp"
 #include "server/gateway/gateway.hpp"
 #include "server/log/log.hpp"
@@ -12,7 +11,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <boost/asio/awaitable.hpp>
+#include <boost/asio/ip/tcp.hpp>
 #include <fmt/format.h>
 #include <google/protobuf/stubs/logging.h>
 
@@ -33,52 +32,13 @@ struct ServeArguments {
     std::string http{"127.0.0.1:8080"};
     std::string tcp{"127.0.0.1:8081"};
     std::vector<std::string> lidars;
+    std::vector<std::string> discover;
     std::string mode;
     bool idle{};
     std::size_t threads{1};
     std::string state_dir;
     std::string log_level{"info"};
 };
-
-constexpr const char* default_virtual = "virtual:a1m8";
-
-/// Puts the ports where a lidar answers into `found`.
-asio::awaitable<void> find_lidars(
-    asio::any_io_executor executor,
-    std::shared_ptr<spdlog::logger> log,
-    std::vector<std::string>& found
-) {
-    std::vector<std::string> paths;
-    for (const auto& port : link::list_candidate_ports()) {
-        paths.push_back(port.path);
-    }
-    const auto hints = [](const std::string&) { return std::vector<std::uint32_t>(); };
-    for (auto& lidar : co_await device::discover(executor, paths, hints, log)) {
-        found.push_back(std::move(lidar.path));
-    }
-}
-
-/// The lidars in these texts; a virtual one if there are none.
-Result<std::vector<gateway::LidarUrl>, Problem>
-to_urls(const std::vector<std::string>& texts, const std::shared_ptr<spdlog::logger>& log) {
-    std::vector<gateway::LidarUrl> urls;
-    for (const auto& text : texts) {
-        auto url = gateway::parse_lidar_url(text);
-        if (!url) {
-            return url.error();
-        }
-        urls.push_back(std::move(*url));
-    }
-    if (urls.empty()) {
-        log->warn(
-            "no lidar found: starting a virtual one. Name a port with --lidar, e.g. --lidar "
-            "/dev/ttyUSB0"
-        );
-        auto& stand_in = urls.emplace_back(*gateway::parse_lidar_url(default_virtual));
-        stand_in.is_stand_in = true;
-    }
-    return urls;
-}
 
 Result<gateway::GatewayOptions, Problem> to_options(const ServeArguments& arguments) {
     gateway::GatewayOptions options;
@@ -138,16 +98,20 @@ int serve(const ServeArguments& arguments) {
     }
     const auto log = log::make_logger("gateway");
     StopSignals signals;
-    auto texts = arguments.lidars;
-    if (texts.empty() && !signals.run(find_lidars(signals.executor(), log, texts))) {
+    auto choice = choose_lidars(
+        arguments.lidars,
+        arguments.discover.empty() ? patterns_of_environment() : arguments.discover,
+        log
+    );
+    if (!choice) {
+        return report(choice.error());
+    }
+    if (choice->find && !signals.run(find_lidars(signals.executor(), log, *choice))) {
         log->info("stopped before anything was started");
         return 0;
     }
-    auto lidars = to_urls(texts, log);
-    if (!lidars) {
-        return report(lidars.error());
-    }
-    options->lidars = std::move(*lidars);
+    stand_in_for_none(*choice, *log);
+    options->lidars = std::move(choice->lidars);
     auto gateway = gateway::Gateway::start(std::move(*options), log::make_logger);
     if (!gateway) {
         return report(gateway.error());
@@ -170,9 +134,18 @@ void add_serve_command(CLI::App& app, int& exit_code) {
     command.add_option(
         "--lidar",
         arguments->lidars,
-        "A lidar: a serial port, or virtual:MODEL[?world=FILE] for a virtual one. Repeatable. "
-        "Without it every RPLIDAR found on a USB port is taken, and if there is none a virtual one "
-        "is started"
+        "A lidar: a serial port (/dev/ttyUSB0), tcp://HOST[:PORT], udp://HOST[:PORT], or "
+        "virtual:MODEL[?world=FILE] for a virtual one; each with ?name=ID&mode=NAME&hz=SPEED if "
+        "wanted. Repeatable. Without it every RPLIDAR found on a USB port is taken, and if there "
+        "is "
+        "none a virtual one is started"
+    );
+    command.add_option(
+        "--discover",
+        arguments->discover,
+        "Look for lidars on the ports of this pattern too, e.g. '/dev/ttyAMA*', and on USB ports "
+        "even if --lidar is given. Repeatable; or the environment's SWEEPCAST_DISCOVER, with ':' "
+        "between patterns"
     );
     command
         .add_option(
@@ -206,6 +179,10 @@ void add_serve_command(CLI::App& app, int& exit_code) {
         "  sweepcast serve                                    what is plugged in, or a virtual "
         "lidar\n"
         "  sweepcast serve --lidar /dev/ttyUSB0               one lidar\n"
+        "  sweepcast serve --discover '/dev/ttyAMA*'          what is plugged in, or on these "
+        "ports\n"
+        "  sweepcast serve --lidar 'udp://192.168.11.2?hz=10' a network lidar, at 10 turns a "
+        "second\n"
         "  sweepcast serve --lidar virtual:a1m8 --http 0.0.0.0:8080\n"
         "                                                     a virtual one, open to the network"
     );

@@ -218,6 +218,9 @@ device::DeviceOptions Gateway::options_for(const LidarUrl& url) const {
         const auto hints = memory_.baud_hints(port.path);
         options.baud_hints.insert(options.baud_hints.end(), hints.begin(), hints.end());
     }
+    if (url.baud_hint) {
+        options.baud_hints.insert(options.baud_hints.begin(), *url.baud_hint);
+    }
     return options;
 }
 

@@ -4,6 +4,7 @@
 #include "driver/link/link_url.hpp"
 #include "driver/protocol/result.hpp"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,6 +30,7 @@ struct LidarUrl {
     std::string name{};          ///< the id it is to have; empty: by its serial number
     std::string mode{};          ///< scan mode by name or id; empty: not asked for
     std::optional<double> hz{};  ///< rotations per second; none: not asked for
+    std::optional<std::uint32_t> baud_hint{};  ///< line speed at which it was just found
     /// Nobody asked for it: it stands in for a lidar that was not found.
     bool is_stand_in{};
 };

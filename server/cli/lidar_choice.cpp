@@ -1,0 +1,102 @@
+#include "server/cli/lidar_choice.hpp"
+
+#include "driver/device/probe.hpp"
+#include "driver/link/discovery.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <set>
+#include <string_view>
+#include <utility>
+
+namespace sweepcast::cli {
+
+namespace asio = boost::asio;
+
+namespace {
+
+constexpr const char* default_virtual = "virtual:a1m8";
+
+std::vector<link::LinkUrl> links_of(const std::vector<gateway::LidarUrl>& lidars) {
+    std::vector<link::LinkUrl> links;
+    for (const auto& lidar : lidars) {
+        if (const auto* link = std::get_if<link::LinkUrl>(&lidar.where)) {
+            links.push_back(*link);
+        }
+    }
+    return links;
+}
+
+}  // namespace
+
+Result<LidarChoice, Problem> choose_lidars(
+    const std::vector<std::string>& named,
+    std::vector<std::string> patterns,
+    const std::shared_ptr<spdlog::logger>& log
+) {
+    LidarChoice choice;
+    std::set<std::string> places;
+    for (const auto& text : named) {
+        auto url = gateway::parse_lidar_url(text);
+        if (!url) {
+            return url.error();
+        }
+        const auto* link = std::get_if<link::LinkUrl>(&url->where);
+        if (link != nullptr && !places.insert(link::place_key(*link)).second) {
+            log->warn("--lidar {}: named before, perhaps by another name; taken once", text);
+            continue;
+        }
+        choice.lidars.push_back(std::move(*url));
+    }
+    choice.find = choice.lidars.empty() || !patterns.empty();
+    choice.patterns = std::move(patterns);
+    return choice;
+}
+
+std::vector<std::string> patterns_of_environment() {
+    std::vector<std::string> patterns;
+    // Read before any thread is started.
+    const char* value = std::getenv("SWEEPCAST_DISCOVER");  // NOLINT(concurrency-mt-unsafe): alone
+    std::string_view rest = value != nullptr ? value : "";
+    while (!rest.empty()) {
+        const auto pattern = rest.substr(0, rest.find(':'));
+        if (!pattern.empty()) {
+            patterns.emplace_back(pattern);
+        }
+        rest.remove_prefix(std::min(rest.size(), pattern.size() + 1));
+    }
+    return patterns;
+}
+
+asio::awaitable<void> find_lidars(
+    asio::any_io_executor executor,
+    std::shared_ptr<spdlog::logger> log,
+    LidarChoice& choice
+) {
+    const auto there = link::look_around(choice.patterns, links_of(choice.lidars));
+    const auto plan = link::plan_discovery(there);
+    for (const auto& [path, why] : plan.skipped) {
+        log->info("not looking at {}: {}", path, why);
+    }
+    const auto no_hints = [](const std::string&) { return std::vector<std::uint32_t>(); };
+    const auto found = co_await device::discover(executor, plan.look_at, no_hints, log);
+    for (const auto& [path, baud] : found) {
+        gateway::LidarUrl lidar{path, link::LinkUrl{path, link::SerialPlace{path, std::nullopt}}};
+        lidar.baud_hint = baud;
+        choice.lidars.push_back(std::move(lidar));
+    }
+}
+
+void stand_in_for_none(LidarChoice& choice, spdlog::logger& log) {
+    if (!choice.lidars.empty()) {
+        return;
+    }
+    log.warn(
+        "no lidar found: starting a virtual one. Name a port with --lidar, e.g. --lidar "
+        "/dev/ttyUSB0"
+    );
+    auto& stand_in = choice.lidars.emplace_back(*gateway::parse_lidar_url(default_virtual));
+    stand_in.is_stand_in = true;
+}
+
+}  // namespace sweepcast::cli
