@@ -118,10 +118,8 @@ std::vector<std::uint32_t> LidarMemory::baud_hints(const std::string& port) cons
     std::ranges::stable_sort(ranked, std::ranges::greater{}, [](const auto& each) {
         return each.first;
     });
-    std::vector<std::uint32_t> bauds;
-    for (const auto& [weight, baud] : ranked) {
-        bauds.push_back(baud);
-    }
+    std::vector<std::uint32_t> bauds(ranked.size());
+    std::ranges::transform(ranked, bauds.begin(), [](const auto& each) { return each.second; });
     return bauds;
 }
 
