@@ -26,27 +26,27 @@ struct Fault {
     Set set;
 };
 
-template <bool Faults::*member>
+template <bool Faults::*Member>
 bool set_flag(Faults& faults, std::optional<std::string_view> value) {
-    faults.*member = true;
+    faults.*Member = true;
     return !value;
 }
 
-template <double Faults::*member>
+template <double Faults::*Member>
 bool set_rate(Faults& faults, std::optional<std::string_view> value) {
     if (!value) {
         return false;
     }
     const auto* const end = value->data() + value->size();
-    const auto [stop, failure] = std::from_chars(value->data(), end, faults.*member);
+    const auto [stop, failure] = std::from_chars(value->data(), end, faults.*Member);
     // Written so that NaN is refused.
-    return failure == std::errc{} && stop == end && faults.*member >= 0.0 && faults.*member <= 1.0;
+    return failure == std::errc{} && stop == end && faults.*Member >= 0.0 && faults.*Member <= 1.0;
 }
 
-template <HealthStatus status>
+template <HealthStatus Status>
 bool set_health(Faults& faults, std::optional<std::string_view> value) {
     constexpr std::uint16_t usual_code = 1;
-    faults.health = {status, usual_code};
+    faults.health = {Status, usual_code};
     if (!value) {
         return true;
     }

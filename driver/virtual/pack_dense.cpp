@@ -8,7 +8,7 @@ namespace sweepcast::virtual_lidar {
 
 namespace {
 
-constexpr double field_mm = 65535.0;
+constexpr double dense_field_mm = 65535.0;
 
 class DensePacker final : public Packer {
 public:
@@ -23,7 +23,7 @@ public:
             .distances_mm = {}};
         for (std::size_t k = 0; k < capsule.distances_mm.size(); ++k) {
             const double angle_deg = received_degrees(stretch.spread_q16(k));
-            const auto echo = stretch.measure(beam, angle_deg, k, field_mm);
+            const auto echo = stretch.measure(beam, angle_deg, k, dense_field_mm);
             capsule.distances_mm[k] = static_cast<std::uint16_t>(std::lround(echo.distance_mm));
         }
         const auto packet = protocol::encode_dense(capsule);

@@ -10,7 +10,7 @@ namespace sweepcast::virtual_lidar {
 
 namespace {
 
-constexpr double field_mm = 16383.0;
+constexpr double express_field_mm = 16383.0;
 
 // A triangulating scanner sees an echo at an angle that depends on its distance, which these
 // capsules tell as an offset. The vendor's own formula for it (protocol.md 7.5): 8 degrees for what
@@ -26,18 +26,19 @@ std::uint8_t angle_offset_q3(std::optional<double> distance_mm) {
 }
 
 // The angle that a receiver will compute (protocol.md 7.3).
-double corrected_deg(std::int64_t raw_q16, std::uint8_t offset_q3) {
+double express_angle_deg(std::int64_t raw_q16, std::uint8_t offset_q3) {
     return received_degrees(raw_q16 - (std::int64_t{offset_q3} << 13));
 }
 
 // Measures where the receiver will say that it was measured. Angle and distance depend on each
 // other: the offset for what is seen from the angle of a far wall is as near as it needs to be,
 // since the distance is then measured at the final angle.
-protocol::ExpressSample sample(const Stretch& stretch, Beam& beam, std::size_t k) {
+protocol::ExpressSample express_sample(const Stretch& stretch, Beam& beam, std::size_t k) {
     const auto raw_q16 = stretch.spread_q16(k);
-    const double first_guess_deg = corrected_deg(raw_q16, angle_offset_q3(std::nullopt));
+    const double first_guess_deg = express_angle_deg(raw_q16, angle_offset_q3(std::nullopt));
     const auto offset_q3 = angle_offset_q3(beam.true_distance_mm(first_guess_deg, stretch.time(k)));
-    const auto echo = stretch.measure(beam, corrected_deg(raw_q16, offset_q3), k, field_mm);
+    const auto echo =
+        stretch.measure(beam, express_angle_deg(raw_q16, offset_q3), k, express_field_mm);
     return {static_cast<std::uint16_t>(std::lround(echo.distance_mm)), offset_q3};
 }
 
@@ -53,7 +54,7 @@ public:
             .start_angle = stretch.start_angle(),
             .samples = {}};
         for (std::size_t k = 0; k < capsule.samples.size(); ++k) {
-            capsule.samples[k] = sample(stretch, beam, k);
+            capsule.samples[k] = express_sample(stretch, beam, k);
         }
         const auto packet = protocol::encode_express(capsule);
         bytes_.assign(packet.begin(), packet.end());

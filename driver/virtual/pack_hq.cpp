@@ -9,7 +9,7 @@ namespace sweepcast::virtual_lidar {
 
 namespace {
 
-constexpr double field_mm = std::numeric_limits<std::uint32_t>::max() / 4.0;
+constexpr double hq_field_mm = std::numeric_limits<std::uint32_t>::max() / 4.0;
 
 protocol::AngleQ14 angle_of(double turns) {
     constexpr double steps_per_turn = 65536.0;
@@ -30,7 +30,7 @@ public:
         for (std::size_t k = 0; k < packet.samples.size(); ++k) {
             const double turns = stretch.turns(k);
             const auto angle = angle_of(turns);
-            const auto echo = stretch.measure(beam, angle.degrees(), k, field_mm);
+            const auto echo = stretch.measure(beam, angle.degrees(), k, hq_field_mm);
             packet.samples[k] = {
                 .angle = angle,
                 .distance = {static_cast<std::uint32_t>(std::lround(echo.distance_mm * 4.0))},

@@ -8,7 +8,7 @@ namespace sweepcast::virtual_lidar {
 
 namespace {
 
-constexpr double field_mm = 16383.75;
+constexpr double normal_field_mm = 16383.75;
 
 class NormalPacker final : public Packer {
 public:
@@ -16,7 +16,7 @@ public:
 
     const std::vector<std::uint8_t>& pack(const Stretch& stretch, Beam& beam) override {
         const auto angle = stretch.start_angle();
-        const auto echo = stretch.measure(beam, angle.degrees(), 0, field_mm);
+        const auto echo = stretch.measure(beam, angle.degrees(), 0, normal_field_mm);
         const auto packet = protocol::encode_normal({
             .starts_revolution = std::floor(stretch.start_turns) > std::floor(stretch.turns_before),
             .quality6 = echo.quality6,

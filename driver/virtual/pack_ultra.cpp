@@ -9,23 +9,24 @@ namespace sweepcast::virtual_lidar {
 namespace {
 
 // The last code of the variable scale.
-constexpr double field_mm = 28656.0;
+constexpr double ultra_field_mm = 28656.0;
 
-double corrected_deg(std::int64_t raw_q16, std::optional<double> distance_mm) {
+double ultra_angle_deg(std::int64_t raw_q16, std::optional<double> distance_mm) {
     const auto distance_q2 = static_cast<std::int32_t>(std::lround(distance_mm.value_or(0) * 4.0));
     return received_degrees(raw_q16 - protocol::ultra_angle_offset_q16(distance_q2));
 }
 
 // Measures where the receiver will say that it was measured. Angle and distance depend on each
 // other: three rounds settle it, but for edges, where a beam may hit the wrong side.
-std::uint16_t sample(const Stretch& stretch, Beam& beam, std::size_t k) {
+std::uint16_t ultra_sample(const Stretch& stretch, Beam& beam, std::size_t k) {
     constexpr int rounds = 3;
     const auto raw_q16 = stretch.spread_q16(k);
-    std::optional<double> distance_mm = field_mm;
+    std::optional<double> distance_mm = ultra_field_mm;
     for (int round = 0; round < rounds; ++round) {
-        distance_mm = beam.true_distance_mm(corrected_deg(raw_q16, distance_mm), stretch.time(k));
+        distance_mm = beam.true_distance_mm(ultra_angle_deg(raw_q16, distance_mm), stretch.time(k));
     }
-    const auto echo = stretch.measure(beam, corrected_deg(raw_q16, distance_mm), k, field_mm);
+    const auto echo =
+        stretch.measure(beam, ultra_angle_deg(raw_q16, distance_mm), k, ultra_field_mm);
     return static_cast<std::uint16_t>(std::lround(echo.distance_mm));
 }
 
@@ -42,11 +43,11 @@ public:
             .restart = stretch.restarted,
             .start_angle = stretch.start_angle(),
             .distances_mm = {}};
-        capsule.distances_mm[0] = first_mm_ ? *first_mm_ : sample(stretch, beam, 0);
+        capsule.distances_mm[0] = first_mm_ ? *first_mm_ : ultra_sample(stretch, beam, 0);
         for (std::size_t k = 1; k < capsule.distances_mm.size(); ++k) {
-            capsule.distances_mm[k] = sample(stretch, beam, k);
+            capsule.distances_mm[k] = ultra_sample(stretch, beam, k);
         }
-        first_mm_ = sample(next_start(stretch), beam, 0);
+        first_mm_ = ultra_sample(next_start(stretch), beam, 0);
         const auto packet = protocol::encode_ultra(capsule, *first_mm_);
         bytes_.assign(packet.begin(), packet.end());
         return bytes_;

@@ -8,7 +8,7 @@ namespace sweepcast::virtual_lidar {
 
 namespace {
 
-constexpr double field_mm = 65522.0;
+constexpr double ultra_dense_field_mm = 65522.0;
 
 class UltraDensePacker final : public Packer {
 public:
@@ -27,7 +27,7 @@ public:
             .samples = {}};
         for (std::size_t k = 0; k < capsule.samples.size(); ++k) {
             const double angle_deg = received_degrees(stretch.spread_q16(k));
-            const auto echo = stretch.measure(beam, angle_deg, k, field_mm);
+            const auto echo = stretch.measure(beam, angle_deg, k, ultra_dense_field_mm);
             capsule.samples[k] = {
                 .distance_mm = static_cast<std::uint16_t>(std::lround(echo.distance_mm)),
                 .quality = static_cast<std::uint8_t>(echo.quality6 << 2)};

@@ -59,13 +59,13 @@ constexpr MotorTraits regulated{
     .coast_down = 2000ms,
     .ripple = 0.002};
 
-constexpr RotationConf rotation{
+constexpr RotationConf regulated_rotation{
     .desired_rpm = 600,
     .pwm_reference = 660,
     .min_rpm = 300,
     .max_rpm = 900};
 
-constexpr BeamTraits beam_up_to(double max_distance_mm) {
+constexpr BeamTraits time_of_flight_beam(double max_distance_mm) {
     return {
         .min_distance_mm = 50.0,
         .max_distance_mm = max_distance_mm,
@@ -73,7 +73,7 @@ constexpr BeamTraits beam_up_to(double max_distance_mm) {
         .noise_part = 0.0005};
 }
 
-constexpr std::array all{
+constexpr std::array timing{
     Persona{
         .key = "s1",
         .title = "RPLIDAR S1",
@@ -83,8 +83,8 @@ constexpr std::array all{
         .hardware = 18,
         .baud = 256'000,
         .motor = regulated,
-        .beam = beam_up_to(40'000.0),
-        .rotation = rotation,
+        .beam = time_of_flight_beam(40'000.0),
+        .rotation = regulated_rotation,
         .modes = s1_modes,
         .typical_mode = 1,
         .boot_time = 2050ms,
@@ -100,8 +100,8 @@ constexpr std::array all{
         .alias = "S2M1-R2L",
         .baud = 1'000'000,
         .motor = regulated,
-        .beam = beam_up_to(30'000.0),
-        .rotation = rotation,
+        .beam = time_of_flight_beam(30'000.0),
+        .rotation = regulated_rotation,
         .modes = s2_modes,
         .typical_mode = 1,
         .boot_time = 200ms,
@@ -116,8 +116,8 @@ constexpr std::array all{
         .hardware = 18,
         .baud = 1'000'000,
         .motor = regulated,
-        .beam = beam_up_to(40'000.0),
-        .rotation = rotation,
+        .beam = time_of_flight_beam(40'000.0),
+        .rotation = regulated_rotation,
         .modes = s3_modes,
         .typical_mode = 1,
         .boot_time = 200ms,
@@ -133,8 +133,8 @@ constexpr std::array all{
         .alias = "C1M1-R2",
         .baud = 460'800,
         .motor = spins_by_itself,
-        .beam = beam_up_to(40'000.0),
-        .rotation = rotation,
+        .beam = time_of_flight_beam(40'000.0),
+        .rotation = regulated_rotation,
         .modes = c1_modes,
         .typical_mode = 1,
         .boot_time = 200ms,
@@ -150,8 +150,8 @@ constexpr std::array all{
         .connection = Connection::ethernet,
         .baud = 1'000'000,
         .motor = regulated,
-        .beam = beam_up_to(40'000.0),
-        .rotation = rotation,
+        .beam = time_of_flight_beam(40'000.0),
+        .rotation = regulated_rotation,
         .modes = t1_modes,
         .typical_mode = 1,
         .boot_time = 500ms,
@@ -162,7 +162,7 @@ constexpr std::array all{
 }  // namespace
 
 std::span<const Persona> time_of_flight_personas() {
-    return all;
+    return timing;
 }
 
 }  // namespace sweepcast::virtual_lidar

@@ -69,13 +69,13 @@ constexpr MotorTraits board{
     .coast_down = 2000ms,
     .ripple = 0.004};
 
-constexpr RotationConf rotation{
+constexpr RotationConf board_rotation{
     .desired_rpm = 600,
     .pwm_reference = 660,
     .min_rpm = 300,
     .max_rpm = 900};
 
-constexpr BeamTraits beam_up_to(double max_distance_mm) {
+constexpr BeamTraits triangulation_beam(double max_distance_mm) {
     return {
         .min_distance_mm = 150.0,
         .max_distance_mm = max_distance_mm,
@@ -84,7 +84,7 @@ constexpr BeamTraits beam_up_to(double max_distance_mm) {
 }
 
 // What they say while booting has three lines (protocol.md 11.2).
-constexpr std::array all{
+constexpr std::array triangulating{
     Persona{
         .key = "a1m8",
         .title = "RPLIDAR A1M8",
@@ -94,8 +94,8 @@ constexpr std::array all{
         .hardware = 7,
         .baud = 115'200,
         .motor = belt,
-        .beam = beam_up_to(12'000.0),
-        .rotation = rotation,
+        .beam = triangulation_beam(12'000.0),
+        .rotation = board_rotation,
         .modes = a1m8_modes,
         .typical_mode = 1,
         .boot_text = "RP LIDAR System.\r\nFirmware Ver 1.29 - rtm, HW Ver 7\r\nModel: 18\r\n",
@@ -111,8 +111,8 @@ constexpr std::array all{
         .hardware = 5,
         .baud = 115'200,
         .motor = board,
-        .beam = beam_up_to(12'000.0),
-        .rotation = rotation,
+        .beam = triangulation_beam(12'000.0),
+        .rotation = board_rotation,
         .modes = a2m8_modes,
         .typical_mode = 3,
         .boot_text = "RP LIDAR System.\r\nFirmware Ver 1.25 - rtm, HW Ver 5\r\nModel: 28\r\n",
@@ -128,8 +128,8 @@ constexpr std::array all{
         .hardware = 4,
         .baud = 115'200,
         .motor = board,
-        .beam = beam_up_to(16'000.0),
-        .rotation = rotation,
+        .beam = triangulation_beam(16'000.0),
+        .rotation = board_rotation,
         .modes = a2m8_old_modes,
         .typical_mode = 1,
         .boot_text = "RP LIDAR System.\r\nFirmware Ver 1.20 - rtm, HW Ver 4\r\nModel: 28\r\n",
@@ -145,8 +145,8 @@ constexpr std::array all{
         .hardware = 6,
         .baud = 256'000,
         .motor = board,
-        .beam = beam_up_to(12'000.0),
-        .rotation = rotation,
+        .beam = triangulation_beam(12'000.0),
+        .rotation = board_rotation,
         .modes = a2m12_modes,
         .typical_mode = 3,
         .boot_text = "RP LIDAR System.\r\nFirmware Ver 1.32 - rtm, HW Ver 6\r\nModel: 2C\r\n",
@@ -163,8 +163,8 @@ constexpr std::array all{
         .alias = "A3M1",
         .baud = 256'000,
         .motor = board,
-        .beam = beam_up_to(25'000.0),
-        .rotation = rotation,
+        .beam = triangulation_beam(25'000.0),
+        .rotation = board_rotation,
         .modes = a3m1_modes,
         .typical_mode = 3,
         .boot_text = "RP LIDAR System.\r\nFirmware Ver 1.26 - rtm, HW Ver 6\r\nModel: 31\r\n",
@@ -176,7 +176,7 @@ constexpr std::array all{
 }  // namespace
 
 std::span<const Persona> triangulation_personas() {
-    return all;
+    return triangulating;
 }
 
 }  // namespace sweepcast::virtual_lidar
