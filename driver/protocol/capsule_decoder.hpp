@@ -79,7 +79,7 @@ private:
     };
 
     std::size_t step(const TimedBytes& input, Decoded& out);
-    std::size_t search(std::span<const std::uint8_t> bytes, Decoded& out);
+    std::size_t search(CapsuleBytes bytes, Decoded& out);
     void accept(CapsuleBytes bytes, SampleTime arrival, Decoded& out);
     void restart(Decoded& out);
     void finish_held(CapsuleBytes next, AngleQ6 next_start, Decoded& out);
@@ -107,7 +107,7 @@ std::size_t CapsuleDecoder<Format>::step(const TimedBytes& input, Decoded& out) 
         if (!damage_) {
             damage_.emplace(capsule_size, opens_capsule(bytes[0], bytes[1]), out);
         }
-        return search(bytes, out);
+        return search(capsule, out);
     }
     if (damage_ && damage_->given_up() % capsule_size != 0) {
         if (bytes.size() < 2 * capsule_size) {
@@ -122,9 +122,10 @@ std::size_t CapsuleDecoder<Format>::step(const TimedBytes& input, Decoded& out) 
     return capsule_size;
 }
 
-/// Gives up the bytes before the next place where a capsule may begin; at least one.
+/// Gives up the bytes before the next place where a capsule may begin; at least one. Looks no
+/// further than a capsule's length, so that what is reported does not depend on what else is there.
 template <class Format>
-std::size_t CapsuleDecoder<Format>::search(std::span<const std::uint8_t> bytes, Decoded& out) {
+std::size_t CapsuleDecoder<Format>::search(CapsuleBytes bytes, Decoded& out) {
     std::size_t count = 1;
     while (count + 1 < bytes.size() && !opens_capsule(bytes[count], bytes[count + 1])) {
         ++count;

@@ -15,7 +15,7 @@ bool intact_packet(std::span<const std::uint8_t, hq_packet_size> packet) {
 }
 
 /// The first place but 0 where a packet may begin; the end if there is none.
-std::size_t next_sync(std::span<const std::uint8_t> bytes) {
+std::size_t next_sync(std::span<const std::uint8_t, hq_packet_size> bytes) {
     const auto found = std::find(bytes.begin() + 1, bytes.end(), hq_sync_byte);
     return static_cast<std::size_t>(found - bytes.begin());
 }
@@ -39,7 +39,7 @@ std::size_t HqDecoder::step(const TimedBytes& input, Decoded& out) {
         if (!damage_) {
             damage_.emplace(hq_packet_size, packet[0] == hq_sync_byte, out);
         }
-        const auto count = next_sync(bytes);
+        const auto count = next_sync(packet);
         damage_->give_up(count, out);
         return count;
     }

@@ -30,13 +30,19 @@ std::size_t skipped_bytes(const Decoded& decoded) {
     );
 }
 
-class BitFlipTest : public testing::TestWithParam<const char*> {};
+struct FlippedStream {
+    const char* vector;
+    std::size_t bytes;            ///< of it are flipped, one bit at a time
+    std::size_t dearest_packets;  ///< that one may cost
+};
+
+class BitFlipTest : public testing::TestWithParam<FlippedStream> {};
 
 TEST_P(BitFlipTest, ASingleOneCostsNoMoreThanItsNeighbourhood) {
-    auto vector = test::load_vector(GetParam());
-    vector.bytes.resize(std::min<std::size_t>(vector.bytes.size(), 12 * 84));
+    auto vector = test::load_vector(GetParam().vector);
+    vector.bytes.resize(GetParam().bytes);
     const auto clean = decode_exact(vector.type, vector.bytes).samples.size();
-    const std::size_t dearest = vector.type == AnswerType::normal ? 12 : 4 * 32;
+    const auto dearest = GetParam().dearest_packets * samples_per_packet(vector.type);
     for (std::size_t bit = 0; bit < vector.bytes.size() * 8; ++bit) {
         auto damaged = vector.bytes;
         damaged[bit / 8] = static_cast<std::uint8_t>(damaged[bit / 8] ^ 1U << bit % 8);
@@ -49,18 +55,40 @@ TEST_P(BitFlipTest, ASingleOneCostsNoMoreThanItsNeighbourhood) {
 INSTANTIATE_TEST_SUITE_P(
     Streams,
     BitFlipTest,
-    testing::Values("81_room", "82_room"),
-    [](const auto& tested) { return std::string("v") + tested.param; }
+    testing::Values(
+        FlippedStream{"81_room", 1000, 12},
+        FlippedStream{"82_room", 12 * 84, 4},
+        FlippedStream{"83_room", 3 * 781, 1},
+        FlippedStream{"84_room", 8 * 132, 4},
+        FlippedStream{"85_room", 12 * 84, 4},
+        FlippedStream{"86_room", 8 * 170, 4}
+    ),
+    [](const auto& tested) { return std::string("v") + tested.param.vector; }
 );
 
 class NoiseTest : public testing::TestWithParam<AnswerType> {};
 
-TEST_P(NoiseTest, LongNoiseGivesNextToNoSamplesAndIsReported) {
+Bytes random_noise() {
     std::mt19937 random(7);
     Bytes noise(200'000);
     for (auto& byte : noise) {
         byte = static_cast<std::uint8_t>(random());
     }
+    return noise;
+}
+
+TEST_P(NoiseTest, IsReportedTheSameHoweverItIsCut) {
+    const auto noise = random_noise();
+    const auto whole = decode_whole(GetParam(), noise);
+    for (const std::size_t size : {1U, 100U, 512U, 3000U}) {
+        const auto cut = decode_in_pieces(GetParam(), {}, noise, [&] { return size; });
+        EXPECT_EQ(cut.samples, whole.samples) << size;
+        EXPECT_EQ(cut.events, whole.events) << size;
+    }
+}
+
+TEST_P(NoiseTest, LongNoiseGivesNextToNoSamplesAndIsReported) {
+    const auto noise = random_noise();
     const auto decoded = decode_whole(GetParam(), noise);
     // Two check bits every five bytes: a false alignment once in some ten thousand bytes is what
     // they allow.
@@ -72,17 +100,25 @@ TEST_P(NoiseTest, EverySinglyRepeatedByteIsSurvived) {
     for (unsigned value = 0; value < 256; ++value) {
         const Bytes bytes(3000, static_cast<std::uint8_t>(value));
         const auto decoded = decode_exact(GetParam(), bytes);
-        ASSERT_LE(decoded.samples.size(), bytes.size() / packet_size(GetParam()) * 32);
+        ASSERT_LE(
+            decoded.samples.size(),
+            bytes.size() / packet_size(GetParam()) * samples_per_packet(GetParam())
+        );
     }
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Types,
     NoiseTest,
-    testing::Values(AnswerType::normal, AnswerType::express),
-    [](const auto& tested) {
-        return std::string(tested.param == AnswerType::normal ? "normal" : "express");
-    }
+    testing::Values(
+        AnswerType::normal,
+        AnswerType::express,
+        AnswerType::hq,
+        AnswerType::ultra,
+        AnswerType::dense,
+        AnswerType::ultra_dense
+    ),
+    [](const auto& tested) { return "type" + std::to_string(static_cast<int>(tested.param)); }
 );
 
 /// A turning scanner's stream as packets; sample distances count up, so that each sample tells its
