@@ -104,6 +104,15 @@ install_node() {
     install_packages "${node_packages[@]}"
 }
 
+# Some kernels place libraries where the sanitizers of gcc 12 and clang 14 do not expect them; without randomisation they don't.
+without_randomisation() {
+    if setarch --addr-no-randomize true 2>/dev/null; then
+        setarch --addr-no-randomize "$@"
+    else
+        "$@"
+    fi
+}
+
 # How many compilers may run at once: one for each core, but no more than fit in memory (a Beast source takes over 1 GB).
 build_jobs() {
     local cores memory_kib
