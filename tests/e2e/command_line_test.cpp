@@ -29,7 +29,7 @@ Outcome call(std::vector<std::string> arguments) {
 }
 
 TEST(CommandLine, HelpHasExamplesForEveryCommand) {
-    for (const auto* command : {"serve", "watch", "virtual", "probe"}) {
+    for (const auto* command : {"serve", "watch", "virtual", "probe", "decode"}) {
         const auto help = call({command, "--help"});
         EXPECT_EQ(help.exit_code, 0) << command;
         EXPECT_THAT(help.output, HasSubstr("Example")) << command;
@@ -68,7 +68,12 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{{"virtual", "--listen", "nowhere"}, "tcp://127.0.0.1:20108"},
         Mistake{{"serve", "--lidar", "virtual:a1m8?fault=nonsense"}, "protection-stop"},
         Mistake{{"probe", "/nonexistent"}, "/nonexistent"},
-        Mistake{{"probe", "/etc/passwd"}, "/etc/passwd"}
+        Mistake{{"probe", "/etc/passwd"}, "/etc/passwd"},
+        Mistake{{"decode", "/etc/passwd"}, "--type"},
+        Mistake{{"decode", "--type", "x", "/etc/passwd"}, "0x84 (ultra)"},
+        Mistake{{"decode", "--type", "84", "/nonexistent"}, "/nonexistent"},
+        Mistake{{"decode", "--type", "84", "/etc"}, "/etc"},
+        Mistake{{"decode", "--type", "84", "--sample-us", "-1", "/etc/passwd"}, "--sample-us"}
     )
 );
 

@@ -65,10 +65,13 @@ VectorTiming to_timing(const json::value& timing, const protocol::DecodeSettings
 
 }  // namespace
 
+std::string vector_path(const std::string& name) {
+    return std::string(SWEEPCAST_VECTORS) + "/" + name + ".bin";
+}
+
 Vector load_vector(const std::string& name) {
-    const auto path = std::string(SWEEPCAST_VECTORS) + "/" + name;
-    const auto bytes = read_file(path + ".bin");
-    const auto text = json::parse(read_file(path + ".json"));
+    const auto bytes = read_file(vector_path(name));
+    const auto text = json::parse(read_file(std::string(SWEEPCAST_VECTORS) + "/" + name + ".json"));
 
     Vector vector;
     vector.bytes.assign(bytes.begin(), bytes.end());

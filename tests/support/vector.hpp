@@ -33,6 +33,9 @@ struct Vector {
     std::optional<VectorTiming> timing;
 };
 
+/// The file that holds the bytes of a case.
+[[nodiscard]] std::string vector_path(const std::string& name);
+
 /// Loads a case, e.g. "82_room". Throws if it cannot be read: the test then fails.
 [[nodiscard]] Vector load_vector(const std::string& name);
 
