@@ -35,6 +35,11 @@ std::uint32_t starting_baud(const Persona& persona, const EmulatorSettings& sett
     return settings.on_ethernet ? ethernet_baud : persona.baud;
 }
 
+bool is_scan_request(Command command) {
+    return command == Command::scan || command == Command::force_scan ||
+           command == Command::express_scan || command == Command::hq_scan;
+}
+
 protocol::SampleTime in_microseconds(Moment moment) {
     return std::chrono::floor<std::chrono::microseconds>(moment);
 }
@@ -175,6 +180,10 @@ void Emulator::note_motor(bool switched) {
 }
 
 void Emulator::serve_idle(const protocol::Request& request, Moment now) {
+    if (settings_.playback != nullptr && is_scan_request(request.command)) {
+        start_scan(settings_.playback->mode(), true, now);
+        return;
+    }
     switch (request.command) {
     case Command::scan:
     case Command::force_scan:
@@ -227,6 +236,9 @@ void Emulator::start_scan(const ScanMode& mode, bool forced, Moment now) {
     }
     send_answer(stream_descriptor(mode), now);
     scan_ = Scan{.mode = &mode, .forced = forced, .requested = now + persona_->answer_time};
+    if (settings_.playback != nullptr) {
+        settings_.playback->start(scan_->requested, baud());
+    }
     on_event_({Occurrence::scan_started, &mode});
     note_motor(motor_.begin_scan(now));
 }
@@ -288,8 +300,31 @@ void Emulator::advance(Moment now) {
     }
 }
 
+// One step: sends a piece of the capture. Nothing of it may get lost here: what finds no room on
+// the line waits.
+bool Emulator::advance_playback(Moment now) {
+    const auto piece = settings_.playback->piece();
+    if (!piece) {
+        if (!std::exchange(scan_->played_out, true)) {
+            on_event_({Occurrence::played_out});
+        }
+        return false;
+    }
+    const bool silent = settings_.faults.mute || settings_.faults.banner;
+    if (piece->ready > now ||
+        !(silent || line_.push(Payload::measurement, piece->bytes, piece->ready) ||
+          line_.push(Payload::measurement, piece->bytes, now))) {
+        return false;
+    }
+    settings_.playback->pop();
+    return true;
+}
+
 // One step: begins the stream, pauses it, or sends a packet. False when there is nothing to do yet.
 bool Emulator::advance_scan(Moment now) {
+    if (settings_.playback != nullptr) {
+        return advance_playback(now);
+    }
     auto& stream = scan_->stream;
     if (!stream) {
         return begin_stream(now);
@@ -332,7 +367,11 @@ std::optional<Moment> Emulator::next_due() const {
     consider(booted_at_);
     consider(next_banner_);
     consider(autobaud_.trial_ends());
-    if (scan_ && scan_->stream) {
+    if (scan_ && settings_.playback != nullptr) {
+        if (const auto piece = settings_.playback->piece()) {
+            consider(piece->ready);
+        }
+    } else if (scan_ && scan_->stream) {
         consider(scan_->stream->packet_ready());
     } else if (scan_ && !scan_->forced) {
         consider(motor_.motor().stable_from());

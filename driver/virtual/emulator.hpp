@@ -10,6 +10,7 @@
 #include "driver/virtual/measurement_stream.hpp"
 #include "driver/virtual/motor_drive.hpp"
 #include "driver/virtual/persona.hpp"
+#include "driver/virtual/playback.hpp"
 #include "driver/virtual/transmit_line.hpp"
 
 #include <cstdint>
@@ -28,6 +29,7 @@ enum class Occurrence : std::uint8_t {
     scan_stopped,
     reset,
     protection_stop,
+    played_out,     ///< the captured scan has ended
     baud_measured,  ///< autobaud: the line has a new speed, on trial
 };
 
@@ -41,6 +43,8 @@ struct EmulatorSettings {
     Faults faults{};
     std::uint64_t seed{};  ///< of damage on the line
     bool on_ethernet{};    ///< played on a network, by a persona that has one
+    /// Whatever scan is asked for, this one is played. Outlives the emulator, as does its persona.
+    Playback* playback{};
 };
 
 /// A scanner from the moment it gets power. It behaves as protocol.md 11 and 14 say:
@@ -104,6 +108,7 @@ private:
         bool forced{};
         Moment requested;                           // no sample is taken before
         std::optional<MeasurementStream> stream{};  // none: waits for a stable rotation
+        bool played_out{};
     };
 
     void serve(const protocol::Request& request, Moment now);
@@ -119,6 +124,7 @@ private:
     void
     listen_for_autobaud(std::span<const std::uint8_t> bytes, std::uint32_t host_baud, Moment now);
     bool advance_scan(Moment now);
+    bool advance_playback(Moment now);
     bool begin_stream(Moment now);
     void send_answer(std::span<const std::uint8_t> bytes, Moment now);
     void send(Payload payload, std::span<const std::uint8_t> bytes, Moment ready);

@@ -22,6 +22,8 @@ public:
             return "the link to the port cannot be made";
         case errc::recording_unavailable:
             return "the recording cannot be written";
+        case errc::capture_unusable:
+            return "there is no captured scan to play";
         case errc::invalid_option:
             return "an option has a value that makes no sense";
         }

@@ -13,6 +13,7 @@ enum class errc {
     port_unavailable,       ///< the system gave no pseudo terminal
     link_unavailable,       ///< the link to the port cannot be made, or its name is taken
     recording_unavailable,  ///< the recording cannot be written
+    capture_unusable,       ///< the file cannot be read, or holds no scan to play
     invalid_option,         ///< an option has a value that makes no sense
 };
 

@@ -60,6 +60,9 @@ std::optional<Problem> check(const VirtualLidarOptions& options) {
     if (!(options.dropout >= 0.0 && options.dropout <= 1.0)) {
         return invalid("the dropout is not in 0..1", "give a fraction such as 0.05");
     }
+    if (options.loop && options.play.empty()) {
+        return invalid("there is no capture to loop", "give one with --play");
+    }
     if (!options.link.empty() && !options.listen.empty()) {
         return invalid(
             "only a pseudo terminal can have a link",
@@ -96,6 +99,14 @@ Result<Faults, Problem> faults_of(const VirtualLidarOptions& options) {
         }
     }
     return faults;
+}
+
+// Null if none is to be played.
+Result<std::unique_ptr<Playback>, Problem> playback_of(const VirtualLidarOptions& options) {
+    if (options.play.empty()) {
+        return std::unique_ptr<Playback>();
+    }
+    return Playback::load(options.play, options.loop);
 }
 
 template <class Port>
@@ -141,6 +152,7 @@ struct VirtualLidar::Parts {
     SerialNumber serial;
     Beam beam;
     EmulatorSettings settings;
+    std::unique_ptr<Playback> playback;
 };
 
 Result<std::unique_ptr<VirtualLidar>, Problem> VirtualLidar::create(
@@ -159,7 +171,11 @@ Result<std::unique_ptr<VirtualLidar>, Problem> VirtualLidar::create(
     if (!faults) {
         return std::move(faults).error();
     }
-    const auto* const persona = find_persona(options.model);
+    auto playback = playback_of(options);
+    if (!playback) {
+        return std::move(playback).error();
+    }
+    const auto* const persona = *playback ? &(*playback)->persona() : find_persona(options.model);
     auto port = open_port(executor, options, *persona);
     if (!port) {
         return std::move(port).error();
@@ -176,12 +192,14 @@ Result<std::unique_ptr<VirtualLidar>, Problem> VirtualLidar::create(
         .link = {},
         .recording = {},
         .persona = persona,
-        .serial = serial_of(options),
+        .serial = *playback && options.serial.empty() ? (*playback)->serial() : serial_of(options),
         .beam = Beam(std::move(*world), persona->beam, beam),
         .settings =
             {.faults = *faults,
              .seed = options.seed,
-             .on_ethernet = on_ethernet(options, *persona)},
+             .on_ethernet = on_ethernet(options, *persona),
+             .playback = playback->get()},
+        .playback = std::move(*playback),
     };
     if (!options.recording.empty()) {
         auto recording = Recording::create(options.recording);
@@ -207,6 +225,7 @@ VirtualLidar::VirtualLidar(Parts&& parts)
     , any_baud_(parts.any_baud)
     , link_(std::move(parts.link))
     , recording_(std::move(parts.recording))
+    , playback_(std::move(parts.playback))
     , persona_(parts.persona)
     , emulator_(
           *parts.persona,
@@ -359,6 +378,8 @@ void VirtualLidar::log_event(const Event& event) {
         return logger_->info("{} reset", port());
     case Occurrence::protection_stop:
         return logger_->warn("{} protection stop", port());
+    case Occurrence::played_out:
+        return logger_->info("{} the capture has been played to its end", port());
     case Occurrence::baud_measured:
         return logger_->info("{} measured {} baud, on trial", port(), emulator_.baud());
     }

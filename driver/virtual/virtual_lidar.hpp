@@ -25,10 +25,12 @@ namespace sweepcast::virtual_lidar {
 
 /// What a user can choose. Empty texts: not asked for.
 struct VirtualLidarOptions {
-    std::string model{"a1m8"};          ///< key of a persona
-    std::string listen{};               ///< see parse_listen_address(); empty: a pseudo terminal
-    std::string link{};                 ///< path of a symbolic link to the pseudo terminal
-    bool any_baud{};                    ///< whatever speed a host sets, it is understood
+    std::string model{"a1m8"};  ///< key of a persona
+    std::string listen{};       ///< see parse_listen_address(); empty: a pseudo terminal
+    std::string link{};         ///< path of a symbolic link to the pseudo terminal
+    std::string play{};         ///< a capture to play instead of measuring; its model counts
+    bool loop{};                ///< play it again and again
+    bool any_baud{};            ///< whatever speed a host sets, it is understood
     std::vector<std::string> faults{};  ///< see add_fault()
     std::string world{};                ///< file of points; empty: the built-in living room
     std::string serial{};               ///< 32 hex digits; empty: derived from model, link and seed
@@ -82,6 +84,7 @@ private:
     bool any_baud_;
     std::optional<PortLink> link_;
     std::optional<Recording> recording_;
+    std::unique_ptr<Playback> playback_;
     const Persona* persona_;
     Emulator emulator_;
     boost::asio::steady_timer next_step_;

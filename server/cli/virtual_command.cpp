@@ -61,6 +61,7 @@ Examples:
   sweepcast virtual --world room.csv --noise 0 --seed 7
   sweepcast virtual --model t1 --listen udp://127.0.0.1:8089
   sweepcast virtual --model s1 --listen tcp://127.0.0.1:20108
+  sweepcast virtual --play bug.capture --loop
   sweepcast virtual --model s2 --fault noise=0.001 --fault warning=0x8001)";
 
 std::string_view motor_of(const virtual_lidar::Persona& persona) {
@@ -186,6 +187,12 @@ void add_virtual_command(CLI::App& app, int& exit_code) {
         options->serial,
         "Serial number, 32 hex digits (default: from model, link and seed)"
     );
+    command->add_option(
+        "--play",
+        options->play,
+        "Play this capture, as the scanner that it is of, when a scan is started"
+    );
+    command->add_flag("--loop", options->loop, "Play the capture again and again");
     command->add_option("--record", options->recording, "File for the measurement bytes sent");
     command->callback([options, list_models, &exit_code] {
         if (*list_models || options->model == "list") {

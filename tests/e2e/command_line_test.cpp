@@ -66,6 +66,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{{"virtual", "--model", "z9"}, "a2m12"},
         Mistake{{"virtual", "--fault", "noise"}, "noise=RATE"},
         Mistake{{"virtual", "--listen", "nowhere"}, "tcp://127.0.0.1:20108"},
+        Mistake{{"virtual", "--play", "/nonexistent"}, "/nonexistent"},
+        Mistake{{"virtual", "--loop"}, "--play"},
         Mistake{{"serve", "--lidar", "virtual:a1m8?fault=nonsense"}, "protection-stop"},
         Mistake{{"probe", "/nonexistent"}, "/nonexistent"},
         Mistake{{"probe", "/etc/passwd"}, "/etc/passwd"},
