@@ -12,14 +12,6 @@
 
 namespace sweepcast::device {
 
-/// Next steps that several causes share.
-inline constexpr std::string_view supply_advice =
-    "give it a supply of its own: 5 V with 1.5 A (a phone charger, a powered hub) and a short, "
-    "thick "
-    "cable; not the USB port of a small board";
-inline constexpr std::string_view cable_advice =
-    "try another USB cable, short, directly into the computer, and press all plugs in firmly";
-
 /// The cause in words and the next step, for any error of the device and of its link.
 [[nodiscard]] Problem advice(error_code code);
 

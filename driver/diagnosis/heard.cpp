@@ -1,4 +1,4 @@
-#include "driver/device/heard.hpp"
+#include "driver/diagnosis/heard.hpp"
 
 #include "driver/protocol/decode.hpp"
 #include "driver/protocol/descriptor_hunter.hpp"
@@ -7,7 +7,7 @@
 #include <array>
 #include <cctype>
 
-namespace sweepcast::device {
+namespace sweepcast::diagnosis {
 
 namespace {
 
@@ -165,4 +165,4 @@ Heard classify(std::uint32_t baud, std::span<const std::uint8_t> bytes) {
     return heard;
 }
 
-}  // namespace sweepcast::device
+}  // namespace sweepcast::diagnosis

@@ -1,5 +1,5 @@
 // What was heard on a line is told apart by its look.
-#include "driver/device/heard.hpp"
+#include "driver/diagnosis/heard.hpp"
 
 #include "driver/protocol/descriptor_hunter.hpp"
 #include "driver/protocol/encode_express.hpp"
@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace sweepcast::device {
+namespace sweepcast::diagnosis {
 namespace {
 
 using testing::HasSubstr;
@@ -128,4 +128,4 @@ TEST(Heard, NoiseIsNeverTakenForAScan) {
 }
 
 }  // namespace
-}  // namespace sweepcast::device
+}  // namespace sweepcast::diagnosis

@@ -1,5 +1,5 @@
 // A diagnosis grows finding by finding, and ends with the first that failed.
-#include "driver/device/finding.hpp"
+#include "driver/diagnosis/finding.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <set>
 
-namespace sweepcast::device {
+namespace sweepcast::diagnosis {
 namespace {
 
 using testing::ElementsAre;
@@ -95,4 +95,4 @@ TEST(DiagnosisBuilder, TellsEveryCheckAtOnce) {
 }
 
 }  // namespace
-}  // namespace sweepcast::device
+}  // namespace sweepcast::diagnosis

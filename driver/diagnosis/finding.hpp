@@ -11,7 +11,11 @@
 #include <string_view>
 #include <vector>
 
-namespace sweepcast::device {
+namespace sweepcast::diagnosis {
+
+using device::Check;
+using device::Diagnosis;
+using device::Verdict;
 
 /// The links of the chain, in the order they are examined.
 enum class Step : std::uint8_t {
@@ -88,4 +92,4 @@ private:
     std::size_t done_{};  ///< steps of the chain that have been passed
 };
 
-}  // namespace sweepcast::device
+}  // namespace sweepcast::diagnosis

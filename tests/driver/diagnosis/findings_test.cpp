@@ -1,7 +1,8 @@
 // Every row of what the checks of a diagnosis conclude: what was seen, and what a user is told.
-#include "driver/device/answer_findings.hpp"
-#include "driver/device/port_findings.hpp"
-#include "driver/device/scan_findings.hpp"
+#include "driver/device/error.hpp"
+#include "driver/diagnosis/answer_findings.hpp"
+#include "driver/diagnosis/port_findings.hpp"
+#include "driver/diagnosis/scan_findings.hpp"
 #include "driver/link/error.hpp"
 
 #include <gmock/gmock.h>
@@ -11,7 +12,7 @@
 #include <ostream>
 #include <sys/stat.h>
 
-namespace sweepcast::device {
+namespace sweepcast::diagnosis {
 namespace {
 
 using namespace std::chrono_literals;
@@ -84,8 +85,8 @@ QualityLook quality(std::uint64_t damaged, std::uint64_t lost = 0, std::uint64_t
     return look;
 }
 
-Rotation rotation(double measured, double wanted) {
-    Rotation value;
+device::Rotation rotation(double measured, double wanted) {
+    device::Rotation value;
     value.measured_hz = measured;
     value.wanted_hz = wanted;
     return value;
@@ -279,7 +280,7 @@ std::vector<Row> answer_rows() {
          Verdict::failed,
          "an A2M12, speaks at 256000 baud, not at 115200",
          "another model",
-         "--baud 256000"},
+         "?baud=256000"},
         {"Noise",
          judge_bytes(noisy),
          Step::bytes,
@@ -347,21 +348,21 @@ std::vector<Row> answer_rows() {
          "blocks its head",
          "turn the head by hand"},
         {"HealthUnanswered",
-         judge_health(make_error_code(errc::no_answer)),
+         judge_health(make_error_code(device::errc::no_answer)),
          Step::health,
          Verdict::failed,
          "not how it is",
          "",
          ""},
         {"Modes",
-         judge_modes(std::vector{ScanMode{.name = "Boost", .sample_duration = 125us}}),
+         judge_modes(std::vector{device::ScanMode{.name = "Boost", .sample_duration = 125us}}),
          Step::modes,
          Verdict::ok,
          "",
          "",
          ""},
         {"NoModes",
-         judge_modes(std::vector<ScanMode>{}),
+         judge_modes(std::vector<device::ScanMode>{}),
          Step::modes,
          Verdict::failed,
          "how it can scan",
@@ -617,4 +618,4 @@ TEST(Findings, AnAliasStandsBesideTheModel) {
 }
 
 }  // namespace
-}  // namespace sweepcast::device
+}  // namespace sweepcast::diagnosis

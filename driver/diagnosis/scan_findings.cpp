@@ -1,7 +1,7 @@
-#include "driver/device/scan_findings.hpp"
+#include "driver/diagnosis/scan_findings.hpp"
 
-#include "driver/device/advice.hpp"
-#include "driver/device/answer_findings.hpp"
+#include "driver/diagnosis/answer_findings.hpp"
+#include "driver/diagnosis/next_steps.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <utility>
 
-namespace sweepcast::device {
+namespace sweepcast::diagnosis {
 
 namespace {
 
@@ -273,7 +273,7 @@ Finding judge_quality(const QualityLook& quality) {
     return finding;
 }
 
-Finding judge_speed(const Rotation& rotation) {
+Finding judge_speed(const device::Rotation& rotation) {
     const double measured = rotation.measured_hz;
     const double wanted = rotation.wanted_hz > 0 ? rotation.wanted_hz : rotation.usual_hz;
     if (measured <= 0) {
@@ -310,4 +310,4 @@ Finding judge_speed(const Rotation& rotation) {
     return {Step::speed, Verdict::ok, seen};
 }
 
-}  // namespace sweepcast::device
+}  // namespace sweepcast::diagnosis

@@ -1,13 +1,13 @@
 // What the checks of a port say: does it exist, may we open it, who holds it, does it open. Pure.
 #pragma once
 
-#include "driver/device/finding.hpp"
+#include "driver/diagnosis/finding.hpp"
 #include "driver/link/open_problem.hpp"
 #include "driver/protocol/result.hpp"
 
 #include <string>
 
-namespace sweepcast::device {
+namespace sweepcast::diagnosis {
 
 /// What was seen of a serial port before it was opened.
 struct PortLook {
@@ -35,4 +35,4 @@ struct PortLook {
 /// "/dev/ttyUSB0: CP2102 USB to UART Bridge Controller (10c4:ea60)".
 [[nodiscard]] std::string describe(const link::SerialPort& port);
 
-}  // namespace sweepcast::device
+}  // namespace sweepcast::diagnosis

@@ -2,10 +2,10 @@
 // is the speed plausible. Pure.
 #pragma once
 
-#include "driver/device/finding.hpp"
-#include "driver/device/heard.hpp"
 #include "driver/device/line_quality.hpp"
 #include "driver/device/rotation.hpp"
+#include "driver/diagnosis/finding.hpp"
+#include "driver/diagnosis/heard.hpp"
 #include "driver/link/port_list.hpp"
 #include "driver/protocol/answer_type.hpp"
 #include "driver/protocol/model.hpp"
@@ -16,7 +16,7 @@
 #include <optional>
 #include <string>
 
-namespace sweepcast::device {
+namespace sweepcast::diagnosis {
 
 /// A scan from its request to its first samples.
 struct SpinLook {
@@ -47,7 +47,7 @@ struct SweepLook {
 /// What came over the line during some revolutions.
 struct QualityLook {
     protocol::AnswerType type{};
-    LineQuality line;
+    device::LineQuality line;
     std::optional<link::SerialPort> adapter{};
 
     /// The part of the packets, or of the bytes if that is more, that was damaged or lost: 0..1.
@@ -69,6 +69,6 @@ inline constexpr double fastest_plausible_hz = 20.0;
 /// it is regulated; an A1's depends on its supply.
 inline constexpr double speed_tolerance = 0.2;
 
-[[nodiscard]] Finding judge_speed(const Rotation& rotation);
+[[nodiscard]] Finding judge_speed(const device::Rotation& rotation);
 
-}  // namespace sweepcast::device
+}  // namespace sweepcast::diagnosis

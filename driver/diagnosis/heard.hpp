@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-namespace sweepcast::device {
+namespace sweepcast::diagnosis {
 
 /// Each tells more than the one before it.
 enum class HeardKind : std::uint8_t {
@@ -41,4 +41,4 @@ struct Heard {
 /// ten thousand times (measured over random bytes).
 [[nodiscard]] Heard classify(std::uint32_t baud, std::span<const std::uint8_t> bytes);
 
-}  // namespace sweepcast::device
+}  // namespace sweepcast::diagnosis

@@ -1,10 +1,9 @@
 // What the checks of talking to a lidar say: is it heard, does it answer, who and how is it. Pure.
 #pragma once
 
-#include "driver/device/error.hpp"
-#include "driver/device/finding.hpp"
-#include "driver/device/heard.hpp"
 #include "driver/device/scan_mode.hpp"
+#include "driver/diagnosis/finding.hpp"
+#include "driver/diagnosis/heard.hpp"
 #include "driver/link/port_list.hpp"
 #include "driver/protocol/reply.hpp"
 #include "driver/protocol/result.hpp"
@@ -14,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace sweepcast::device {
+namespace sweepcast::diagnosis {
 
 /// What was heard at each line speed, in the order they were tried.
 struct LineLook {
@@ -39,6 +38,6 @@ judge_info(const std::optional<protocol::DeviceInfo>& info, const std::string& a
 /// An error: the question went unanswered.
 [[nodiscard]] Finding judge_health(const Result<protocol::Health>& health);
 /// An error: the lidar fell silent meanwhile.
-[[nodiscard]] Finding judge_modes(const Result<std::vector<ScanMode>>& modes);
+[[nodiscard]] Finding judge_modes(const Result<std::vector<device::ScanMode>>& modes);
 
-}  // namespace sweepcast::device
+}  // namespace sweepcast::diagnosis

@@ -1,6 +1,8 @@
-#include "driver/device/answer_findings.hpp"
+#include "driver/diagnosis/answer_findings.hpp"
 
 #include "driver/device/advice.hpp"
+#include "driver/device/error.hpp"
+#include "driver/diagnosis/next_steps.hpp"
 #include "driver/protocol/model.hpp"
 
 #include <fmt/format.h>
@@ -8,7 +10,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace sweepcast::device {
+namespace sweepcast::diagnosis {
 
 namespace {
 
@@ -122,8 +124,10 @@ Finding wrong_baud(const LineLook& line, const Heard& heard) {
          "256000; C1 460800; S2 and S3 1000000",
          "the adapter board of some models has a switch for the speed, and it is in the other "
          "position"},
-        {fmt::format("take the right speed: sweepcast doctor {} --baud {}", line.url, heard.baud),
-         "or leave the speed out: it is found by itself"}};
+        {fmt::format(
+            "write the right speed, ?baud={}, or leave it out: then it is found",
+            heard.baud
+        )}};
 }
 
 Finding noise(const LineLook& line) {
@@ -289,7 +293,7 @@ Finding judge_health(const Result<protocol::Health>& health) {
     case protocol::HealthStatus::error:
         break;
     }
-    const auto problem = advice(errc::protection_stop);
+    const auto problem = device::advice(device::errc::protection_stop);
     return {
         Step::health,
         Verdict::failed,
@@ -309,7 +313,7 @@ Finding judge_health(const Result<protocol::Health>& health) {
          "if it comes back at once, the lidar is broken: keep the code for the maker"}};
 }
 
-Finding judge_modes(const Result<std::vector<ScanMode>>& modes) {
+Finding judge_modes(const Result<std::vector<device::ScanMode>>& modes) {
     if (!modes || modes->empty()) {
         return {
             Step::modes,
@@ -332,4 +336,4 @@ Finding judge_modes(const Result<std::vector<ScanMode>>& modes) {
     return {Step::modes, Verdict::ok, text};
 }
 
-}  // namespace sweepcast::device
+}  // namespace sweepcast::diagnosis

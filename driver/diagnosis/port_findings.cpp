@@ -1,4 +1,4 @@
-#include "driver/device/port_findings.hpp"
+#include "driver/diagnosis/port_findings.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <utility>
 
-namespace sweepcast::device {
+namespace sweepcast::diagnosis {
 
 namespace {
 
@@ -160,7 +160,7 @@ Finding judge_failed_connection(const std::string& url, const Problem& problem) 
         "the address or the port is not its own (usual: udp://192.168.11.2:8089 for a T1 or S2E, "
         "port 20108 for the TCP bridge of an S1)",
         "a firewall on the way drops what it does not know"};
-    finding.next_steps.push_back(
+    finding.next_steps.emplace_back(
         "see whether the address answers at all: ping, and `ip addr` for "
         "an address of this machine in the same network"
     );
@@ -205,4 +205,4 @@ Finding judge_no_port(const std::vector<link::SerialPort>& ports) {
     return finding;
 }
 
-}  // namespace sweepcast::device
+}  // namespace sweepcast::diagnosis

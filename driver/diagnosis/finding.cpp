@@ -1,9 +1,9 @@
-#include "driver/device/finding.hpp"
+#include "driver/diagnosis/finding.hpp"
 
 #include <algorithm>
 #include <utility>
 
-namespace sweepcast::device {
+namespace sweepcast::diagnosis {
 
 const StepNames& names(Step step) {
     return chain.at(static_cast<std::size_t>(step));
@@ -52,4 +52,4 @@ Diagnosis DiagnosisBuilder::finish(std::span<const Step> without) {
     return std::move(diagnosis_);
 }
 
-}  // namespace sweepcast::device
+}  // namespace sweepcast::diagnosis
