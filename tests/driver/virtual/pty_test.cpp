@@ -17,7 +17,7 @@ namespace {
 
 class PtyTest : public testing::Test {
 protected:
-    PtyTest() : pty_(std::move(*Pty::open(context_.get_executor(), 256'000))) {}
+    PtyTest() : pty_(*Pty::open(context_.get_executor(), 256'000)) {}
     ~PtyTest() override { close_host(); }
 
     void open_host() { host_ = ::open(pty_->address().c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK); }
