@@ -176,6 +176,7 @@ asio::awaitable<Result<void>> Device::meet(Conversation& talk) {
 /// Finds the line speed of the lidar, and talks it into the one that was asked for.
 asio::awaitable<Result<void>> Device::find(Conversation& talk) {
     const auto candidates = bauds();
+    log_->debug("looking for it at {} baud", fmt::join(candidates, ", "));
     const auto found = co_await find_baud(talk, candidates);
     if (!found) {
         co_return found.error();

@@ -58,7 +58,7 @@ ScratchDirectory::~ScratchDirectory() {
 
 VirtualLidarProcess::VirtualLidarProcess(std::vector<std::string> options)
     : process(command("virtual", std::move(options)))
-    , port(process.wait_for_output("/dev/")) {}
+    , port(process.wait_for_output("")) {}
 
 GatewayProcess::GatewayProcess(std::vector<std::string> options)
     : process(command("serve", on_own_ports(std::move(options))))
