@@ -39,17 +39,14 @@ struct FinishedCapsule {
 /// recovers more:
 ///  - the bytes of a damaged capsule are searched for the beginning of another one;
 ///  - out of step, a capsule counts if it is intact and either lies a whole number of capsules
-///  after the
-///    last good one or is followed at once by another intact one: sync nibbles and an 8-bit
-///    checksum alone would pass one piece of noise in 65536;
+///    after the last good one or is followed at once by another intact one: sync nibbles and an
+///    8-bit checksum alone would pass one piece of noise in 65536;
 ///  - the capsule before the damage is decoded if the turn up to the next good one fits a whole
-///  number of
-///    packets at the steady rate; its angles then cover its own share of that turn. More than one
-///    packet is believed only if a capsule's sync nibbles followed it directly, else its own tail
-///    may be missing;
+///    number of packets at the steady rate; its angles then cover its own share of that turn. More
+///    than one packet is believed only if a capsule's sync nibbles followed it directly, else its
+///    own tail may be missing;
 ///  - a packet lost without a trace shows as a sudden multiple of the steady rate and is treated
-///  likewise,
-///    where the vendor stretches the capsule before it over the gap.
+///    likewise, where the vendor stretches the capsule before it over the gap.
 ///
 /// `Format` says what the bytes of an answer type mean:
 ///  - `type`, `samples_per_capsule`, `start_word_at`;

@@ -4,29 +4,28 @@
 // sweep began, so a revolution is complete when the position has passed heading 0 again, whether or
 // not a mark says so.
 //
-//  state     | event                                      | what happens                        |
-//  next state
-//  ----------+--------------------------------------------+-------------------------------------+-----------
-//  any       | sample out of line (over 1/8 turn away)    | held back until the next one judges |
-//  same any       | the next continues what was before it, or  | it was noise: kept as a sample,
-//  but | same
-//            | neither (at most 3 times in a row)         | neither its angle nor mark counts   |
-//  any       | the next continues it                      | the jump was real, and forward, as a|
-//  same
-//            |                                            | lidar turns; while searching it only|
-//            |                                            | says where to go on                 |
-//  searching | mark, or the position passes heading 0     | sweep begins with this sample       |
-//  gathering searching | other sample                               | dropped | searching gathering
-//  | mark at least 1/2 turn after the beginning | sweep given out, next one begins    | gathering
-//  gathering | position passes the first heading 0 that is| the same: the mark was lost         |
-//  gathering
-//            | at least 1/2 turn after the beginning      |                                     |
-//  gathering | other sample, marked or not                | added to the sweep                  |
-//  gathering gathering | more samples than a sweep can have         | sweep dropped, its samples
-//  counted  | overgrown overgrown | a beginning as under gathering             | sweep begins with
-//  this sample       | gathering overgrown | other sample                               | dropped
-//  and counted                 | overgrown any       | scan_reset                                 |
-//  unfinished sweep dropped and counted| searching
+//  state     | event                                | what happens                  | next state
+//  ----------+--------------------------------------+-------------------------------+-----------
+//  any       | sample out of line (over 1/8 turn    | held back until the next one  | same
+//            | away)                                | judges it                     |
+//  any       | the next continues what was before   | it was noise: kept, but its   | same
+//            | it, or neither (at most 3 in a row)  | angle and mark count nothing  |
+//  any       | the next continues it                | the jump was real, forward as | same
+//            |                                      | a lidar turns; if searching,  |
+//            |                                      | it only says where to go on   |
+//  searching | mark, or position passes heading 0   | sweep begins with this sample | gathering
+//  searching | other sample                         | dropped                       | searching
+//  gathering | mark at least 1/2 turn after the     | sweep given out, next one     | gathering
+//            | beginning                            | begins                        |
+//  gathering | position passes the first heading 0  | the same: the mark was lost   | gathering
+//            | at least 1/2 turn after it           |                               |
+//  gathering | other sample, marked or not          | added to the sweep            | gathering
+//  gathering | more samples than a sweep can have   | sweep dropped, its samples    | overgrown
+//            |                                      | counted                       |
+//  overgrown | a beginning as under gathering       | sweep begins with this sample | gathering
+//  overgrown | other sample                         | dropped and counted           | overgrown
+//  any       | scan_reset                           | unfinished sweep dropped and  | searching
+//            |                                      | counted                       |
 //
 // The half turn makes a mark shortly before heading 0 (0x82 marks the last sample before raw 360
 // degrees, and its corrected angles go back and forth over 0) and the passing of heading 0 itself
