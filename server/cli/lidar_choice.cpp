@@ -71,6 +71,7 @@ std::vector<std::string> patterns_of_environment() {
 asio::awaitable<void> find_lidars(
     asio::any_io_executor executor,
     std::shared_ptr<spdlog::logger> log,
+    const gateway::LidarMemory& memory,
     LidarChoice& choice
 ) {
     const auto there = link::look_around(choice.patterns, links_of(choice.lidars));
@@ -78,8 +79,8 @@ asio::awaitable<void> find_lidars(
     for (const auto& [path, why] : plan.skipped) {
         log->info("not looking at {}: {}", path, why);
     }
-    const auto no_hints = [](const std::string&) { return std::vector<std::uint32_t>(); };
-    const auto found = co_await device::discover(executor, plan.look_at, no_hints, log);
+    const auto hints = [&memory](const std::string& path) { return memory.baud_hints(path); };
+    const auto found = co_await device::discover(executor, plan.look_at, hints, log);
     for (const auto& [path, baud] : found) {
         gateway::LidarUrl lidar{path, link::LinkUrl{path, link::SerialPlace{path, std::nullopt}}};
         lidar.baud_hint = baud;

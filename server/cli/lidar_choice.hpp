@@ -2,6 +2,7 @@
 #pragma once
 
 #include "driver/protocol/result.hpp"
+#include "server/gateway/lidar_memory.hpp"
 #include "server/gateway/lidar_url.hpp"
 
 #include <boost/asio/any_io_executor.hpp>
@@ -32,10 +33,11 @@ Result<LidarChoice, Problem> choose_lidars(
 std::vector<std::string> patterns_of_environment();
 
 /// Adds the lidars that answer on this machine's ports to `choice`; the log says what was looked
-/// at, and why other ports were not.
+/// at, and why other ports were not. Line speeds that `memory` knows are tried first.
 boost::asio::awaitable<void> find_lidars(
     boost::asio::any_io_executor executor,
     std::shared_ptr<spdlog::logger> log,
+    const gateway::LidarMemory& memory,
     LidarChoice& choice
 );
 

@@ -55,11 +55,20 @@ Result<gateway::GatewayOptions, Problem> to_options(const ServeArguments& argume
     options.threads = arguments.threads;
     options.device.scan_at_once = !arguments.idle;
     options.device.mode = arguments.mode;
-    options.memory_file = arguments.state_dir.empty()
-                              ? gateway::default_memory_file()
-                              : std::filesystem::path(arguments.state_dir) / "lidars.json";
     options.max_connections = most_connections(raise_descriptor_limit());
     return options;
+}
+
+/// Fills `memory` with what earlier runs learnt of the lidars here.
+void remember(gateway::LidarMemory& memory, const std::string& state_dir, spdlog::logger& log) {
+    const auto file = state_dir.empty() ? gateway::default_memory_file()
+                                        : std::filesystem::path(state_dir) / "lidars.json";
+    if (file.empty()) {
+        return;
+    }
+    if (const auto opened = memory.open(file); !opened) {
+        log.warn("{}: {}", opened.error().cause, opened.error().hint);
+    }
 }
 
 void warn_if_open_to_others(const asio::ip::tcp::endpoint& http, spdlog::logger& log) {
@@ -98,6 +107,7 @@ int serve(const ServeArguments& arguments) {
     }
     const auto log = log::make_logger("gateway");
     StopSignals signals;
+    remember(*options->memory, arguments.state_dir, *log);
     auto choice = choose_lidars(
         arguments.lidars,
         arguments.discover.empty() ? patterns_of_environment() : arguments.discover,
@@ -106,7 +116,8 @@ int serve(const ServeArguments& arguments) {
     if (!choice) {
         return report(choice.error());
     }
-    if (choice->find && !signals.run(find_lidars(signals.executor(), log, *choice))) {
+    if (choice->find &&
+        !signals.run(find_lidars(signals.executor(), log, *options->memory, *choice))) {
         log->info("stopped before anything was started");
         return 0;
     }

@@ -178,11 +178,6 @@ Result<void, Problem> Gateway::add_lidars(const MakeLogger& make_logger) {
     if (auto problem = name_clash(options_.lidars)) {
         return std::move(*problem);
     }
-    if (!options_.memory_file.empty()) {
-        if (const auto opened = memory_.open(options_.memory_file); !opened) {
-            log_->warn("{}: {}", opened.error().cause, opened.error().hint);
-        }
-    }
     for (const auto& url : options_.lidars) {
         const auto number = static_cast<std::uint32_t>(lidars_.size() + 1);
         auto where = place(url, number, make_logger);
@@ -197,7 +192,7 @@ Result<void, Problem> Gateway::add_lidars(const MakeLogger& make_logger) {
             worker,
             *hub_,
             ids_,
-            memory_,
+            *options_.memory,
             std::move(log)
         ));
     }
@@ -215,7 +210,7 @@ device::DeviceOptions Gateway::options_for(const LidarUrl& url) const {
     if (way != nullptr && std::holds_alternative<link::SerialPlace>(way->where)) {
         const auto& port = std::get<link::SerialPlace>(way->where);
         options.baud = port.baud;
-        const auto hints = memory_.baud_hints(port.path);
+        const auto hints = options_.memory->baud_hints(port.path);
         options.baud_hints.insert(options.baud_hints.end(), hints.begin(), hints.end());
     }
     if (url.baud_hint) {

@@ -16,7 +16,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -29,8 +28,8 @@ struct GatewayOptions {
     boost::asio::ip::tcp::endpoint tcp;
     std::vector<LidarUrl> lidars;
     device::DeviceOptions device;
-    /// Where line speeds are remembered; empty: nowhere.
-    std::filesystem::path memory_file;
+    /// What is known of line speeds, and what is learnt of them.
+    std::shared_ptr<LidarMemory> memory{std::make_shared<LidarMemory>()};
     /// Threads for lidars and clients.
     std::size_t threads{1};
     /// Most connections at a time, for HTTP and TCP each.
@@ -81,7 +80,6 @@ private:
     net::Workers workers_;
     std::unique_ptr<hub::Hub> hub_;
     LidarIds ids_;
-    LidarMemory memory_;
     VirtualLidars virtual_lidars_;
     std::vector<std::unique_ptr<ManagedLidar>> lidars_;
     std::vector<api::Api> apis_;  ///< one a worker
