@@ -1,7 +1,7 @@
 // What the page says of each state, and what it offers in it.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { buttonsFor, stateWords, type Action } from "../../web/src/lidar_state";
+import { buttonsFor, inTrouble, stateWords, type Action } from "../../web/src/lidar_state";
 import { Lidar_State } from "../../web/src/lidars";
 
 const STATES = Object.values(Lidar_State).filter(
@@ -16,7 +16,6 @@ function offered(
     state,
     connected: true,
     pending: undefined,
-    otherMode: false,
     ...more,
   });
   return (["start", "stop", "reset"] as const).filter((action) => buttons[action].enabled);
@@ -51,8 +50,14 @@ test("while a command runs no other may be given, but a start may be called off"
   assert.deepEqual(offered(Lidar_State.IDLE, { pending: "start" }), []);
 });
 
-test("a scanning lidar can be switched to another mode", () => {
-  assert.deepEqual(offered(Lidar_State.SCANNING, { otherMode: true }), ["start", "stop", "reset"]);
+test("while the mode is being changed the scan can be stopped, and that is all", () => {
+  assert.deepEqual(offered(Lidar_State.SCANNING, { pending: "mode" }), ["stop"]);
+  assert.deepEqual(offered(Lidar_State.IDLE, { pending: "mode" }), []);
+});
+
+test("a lidar that someone must look after is in trouble, one that works or rests is not", () => {
+  const troubled = STATES.filter(inTrouble).map((state) => Lidar_State[state]);
+  assert.deepEqual(troubled, ["DISCONNECTED", "PROTECTION_STOP", "FAILED"]);
 });
 
 test("a command under way shows on its button", () => {
@@ -60,7 +65,6 @@ test("a command under way shows on its button", () => {
     state: Lidar_State.STARTING,
     connected: true,
     pending: "start",
-    otherMode: false,
   });
   assert.deepEqual(start, { label: "Starting…", enabled: false, busy: true });
   assert.deepEqual(stop, { label: "Stop", enabled: true, busy: false });
@@ -71,7 +75,6 @@ test("a state that someone else brought about shows as well", () => {
     state: Lidar_State.STOPPING,
     connected: true,
     pending: undefined,
-    otherMode: false,
   });
   assert.deepEqual(stop, { label: "Stopping…", enabled: false, busy: true });
 });

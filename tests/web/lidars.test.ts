@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { create, type MessageInitShape } from "@bufbuild/protobuf";
 import { LidarSchema } from "../../web/gen/sweepcast/v1/lidar_pb";
-import { Lidar_State, lidarName, Lidars } from "../../web/src/lidars";
+import { Lidar_State, lidarName, lidarTitle, Lidars } from "../../web/src/lidars";
 
 const lidar = (fields: MessageInitShape<typeof LidarSchema>) => create(LidarSchema, fields);
 
@@ -66,3 +66,11 @@ for (const [name, fields] of [
     assert.equal(lidarName(lidar(fields)), name);
   });
 }
+
+test("in the list a lidar is its model, and then which one", () => {
+  const known = { id: "8a5b9cf1", device: { model: "A1M8" } };
+  assert.deepEqual(lidarTitle(lidar(known)), { title: "A1M8", place: "8a5b9cf1" });
+  assert.deepEqual(lidarTitle(lidar({ ...known, isVirtual: true })).place, "8a5b9cf1, virtual");
+  const unknown = { id: "ttyUSB0", url: "/dev/ttyUSB0" };
+  assert.deepEqual(lidarTitle(lidar(unknown)), { title: "/dev/ttyUSB0", place: "" });
+});

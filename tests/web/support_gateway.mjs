@@ -3,12 +3,13 @@ import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { createInterface } from "node:readline";
 
-const START_DEADLINE_MS = 20_000;
+const START_DEADLINE_MS = 60_000;
 
-/// A running gateway with a virtual lidar. `address` may name a port to take again after a restart.
+/// A running gateway with these lidars. `address` may name a port to take again after a restart.
 export class Gateway {
-  static async start(binary, address = "127.0.0.1:0") {
-    const args = ["serve", "--http", address, "--tcp", "127.0.0.1:0", "--lidar", "virtual:a1m8"];
+  static async start(binary, { address = "127.0.0.1:0", lidars = ["virtual:a1m8"] } = {}) {
+    const args = ["serve", "--http", address, "--tcp", "127.0.0.1:0"];
+    for (const lidar of lidars) args.push("--lidar", lidar);
     const child = spawn(binary, args, { stdio: ["ignore", "pipe", "inherit"] });
     const gateway = new Gateway(child);
     try {

@@ -5,7 +5,15 @@ import { create } from "@bufbuild/protobuf";
 import { LidarSchema, ScanModeSchema } from "../../web/gen/sweepcast/v1/lidar_pb";
 import { Lidar_State } from "../../web/src/lidars";
 import { sweepOf } from "../../web/src/sweep";
-import { decimal, duration, metres, modeWords, summary, virtualWords } from "../../web/src/words";
+import {
+  decimal,
+  duration,
+  metres,
+  modeOption,
+  modeWords,
+  summary,
+  virtualWords,
+} from "../../web/src/words";
 import { scanOf } from "./scan_builder";
 
 const lidar = create(LidarSchema, { id: "a", state: Lidar_State.SCANNING });
@@ -45,6 +53,19 @@ test("a mode is told by its rate and reach, as far as they are known", () => {
   assert.equal(modeWords(create(ScanModeSchema, mode)), "4,032 samples/s, up to 12 m");
   assert.equal(modeWords(create(ScanModeSchema, { ...mode, maxDistanceM: 0 })), "4,032 samples/s");
   assert.equal(modeWords(create(ScanModeSchema)), "");
+});
+
+test("the typical mode is marked, whatever else is known of it", () => {
+  const mode = { name: "Express", samplesPerSecond: 4000, maxDistanceM: 12, typical: true };
+  assert.equal(modeOption(create(ScanModeSchema, mode)), "Express – 4 kHz, 12 m (typical)");
+  const bare = create(ScanModeSchema, { name: "Express", typical: true });
+  assert.equal(modeOption(bare), "Express (typical)");
+});
+
+test("a mode that is not the typical one is listed by its facts alone", () => {
+  const mode = { name: "Boost", samplesPerSecond: 15873.02 };
+  assert.equal(modeOption(create(ScanModeSchema, mode)), "Boost – 15.9 kHz");
+  assert.equal(modeOption(create(ScanModeSchema, { name: "Boost" })), "Boost");
 });
 
 test("a live sweep is summed up by its nearest obstacle and rate", () => {

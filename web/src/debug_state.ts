@@ -17,6 +17,7 @@ interface Source {
 ///   lidar      id of the lidar shown, "" if none
 ///   state      its state as in lidar.proto: "SCANNING", ...
 ///   sequence   number of the latest sweep, 0 before the first
+///   mode       scan mode that the sweep drawn was measured in, "" if none is drawn
 ///   missed     gaps in the sequence so far
 ///   stale      what is drawn is not what the lidar sees now
 ///   points     number of points of the sweep that is drawn
@@ -36,6 +37,9 @@ export function exposeDebugState(source: Source): void {
     },
     get sequence() {
       return Number(source.sequence());
+    },
+    get mode() {
+      return source.scene.drawn?.sweep.mode ?? "";
     },
     get missed() {
       return source.missed();

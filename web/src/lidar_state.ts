@@ -34,6 +34,9 @@ export function stateWords(state: Lidar_State): StateWords {
 
 export type Action = "start" | "stop" | "reset";
 
+/// What can be under way: one of the buttons' actions, or a change of the mode.
+export type Doing = Action | "mode";
+
 export interface Button {
   label: string;
   enabled: boolean;
@@ -46,30 +49,27 @@ export interface Situation {
   /// The stream is open, so that the state is the present one.
   connected: boolean;
   /// Asked for and not yet answered.
-  pending: Action | undefined;
-  /// A mode other than the one in use is picked.
-  otherMode: boolean;
+  pending: Doing | undefined;
 }
 
 /// What the three buttons offer.
 export function buttonsFor(situation: Situation): Record<Action, Button> {
-  const { state, connected, pending, otherMode } = situation;
+  const { state, connected, pending } = situation;
   const free = connected && pending === undefined;
   const starting = pending === "start" || state === Lidar_State.STARTING;
   const stopping = pending === "stop" || state === Lidar_State.STOPPING;
-  const restart = state === Lidar_State.SCANNING && otherMode;
   return {
     start: {
-      label: starting ? "Starting…" : restart ? "Switch mode" : "Start",
-      enabled: free && (state === Lidar_State.IDLE || restart),
+      label: starting ? "Starting…" : "Start",
+      enabled: free && state === Lidar_State.IDLE,
       busy: connected && starting,
     },
     stop: {
       label: stopping ? "Stopping…" : "Stop",
-      // A start that hangs can be called off.
+      // A start or a change of mode that hangs can be called off.
       enabled:
         connected &&
-        (pending === undefined || pending === "start") &&
+        (free || pending === "start" || pending === "mode") &&
         (state === Lidar_State.SCANNING || state === Lidar_State.STARTING),
       busy: connected && stopping,
     },
@@ -79,6 +79,11 @@ export function buttonsFor(situation: Situation): Record<Action, Button> {
       busy: connected && pending === "reset",
     },
   };
+}
+
+/// Whether the lidar is in a state that someone must do something about.
+export function inTrouble(state: Lidar_State): boolean {
+  return stateWords(state).tone === "bad";
 }
 
 const RESETTABLE: ReadonlySet<Lidar_State> = new Set([

@@ -1,7 +1,14 @@
 // The lidars of the gateway as the stream tells of them, and which of them is being looked at.
 import { Lidar_State, type Lidar } from "../gen/sweepcast/v1/lidar_pb";
 
-export { Lidar_State, type Lidar, type ScanMode } from "../gen/sweepcast/v1/lidar_pb";
+export {
+  Lidar_State,
+  Rotation_Control,
+  type Lidar,
+  type Line,
+  type Rotation,
+  type ScanMode,
+} from "../gen/sweepcast/v1/lidar_pb";
 
 /// A lidar keeps its number while its id changes once, when it is identified; it goes on answering to
 /// both ids, here too.
@@ -46,7 +53,14 @@ export class Lidars {
   }
 }
 
-/// What to call a lidar in a list: its model and id, or where it is attached while it is not identified.
+/// What a lidar is and which one of them: its model and its id; or where it is attached, and that is all,
+/// while it is not identified.
+export function lidarTitle(lidar: Lidar): { title: string; place: string } {
+  if (!lidar.device?.model) return { title: lidar.url || lidar.id, place: "" };
+  return { title: lidar.device.model, place: lidar.isVirtual ? `${lidar.id}, virtual` : lidar.id };
+}
+
+/// What to call a lidar in a sentence: its model and id, or where it is attached while it is not identified.
 export function lidarName(lidar: Lidar): string {
   if (!lidar.device?.model) return lidar.url || lidar.id;
   const name = `${lidar.device.model} · ${lidar.id}`;

@@ -5,15 +5,19 @@ import { Connection, type ConnectionState, type Socket } from "./connection";
 import { Controls } from "./controls";
 import { RateMeter, SequenceCounter } from "./counters";
 import { exposeDebugState } from "./debug_state";
+import { DiagnosisDialog } from "./diagnosis_dialog";
 import { element, setText, showText } from "./dom";
 import { listenToGestures, ZOOM_STEP } from "./gestures";
 import { Legend } from "./legend";
+import { LidarList } from "./lidar_list";
+import { inTrouble } from "./lidar_state";
 import { Lidar_State, Lidars, type Lidar } from "./lidars";
 import { encodeSubscribe, openFrame, type Frame, type ServerMessage } from "./messages";
 import { Panel } from "./panel";
 import { Scene } from "./scene";
 import { formatSettings, parseSettings } from "./settings";
 import { sweepOf, type Sweep } from "./sweep";
+import { TroubleBox } from "./trouble";
 import { duration, echoWords, summary } from "./words";
 
 /// A scan that is this much late is no longer what the lidar sees.
@@ -42,7 +46,10 @@ class Page {
   private readonly scene = new Scene();
   private readonly panel = new Panel();
   private readonly banner = new Banner(() => this.connection.connect());
-  private readonly controls = new Controls(this.base, (id) => this.pick(id));
+  private readonly list = new LidarList((id) => this.pick(id));
+  private readonly trouble = new TroubleBox();
+  private readonly controls = new Controls(this.base, this.trouble);
+  private readonly diagnosis = new DiagnosisDialog(this.base);
   private readonly legend = new Legend((by) => {
     this.settings.colourBy = by;
     this.remember();
@@ -124,7 +131,7 @@ class Page {
         this.show(message.value);
         break;
       case "error":
-        this.controls.showTrouble(message.value);
+        this.trouble.show(message.value);
         break;
       default:
         // Stats: what was dropped for us is seen in the sequence numbers.
@@ -133,6 +140,7 @@ class Page {
   }
 
   private pick(id: string): void {
+    this.trouble.dismiss();
     this.settings.lidar = id;
     this.choose();
   }
@@ -185,11 +193,12 @@ class Page {
     }
     const now = seconds();
     const wasLive = this.live();
+    // The first is the latest there was, sent at once: it did not come at its own time.
+    if (this.fresh) this.meter.tick(now);
     this.arrivedS = now;
     this.fresh = true;
     this.sequence = frame.sequence;
     this.counter.see(frame.sequence);
-    this.meter.tick(now);
     this.scene.show(this.sweep);
     if (this.sweep.qualityMeasured !== qualityMeasured) this.recolour();
     if (!wasLive) this.refresh();
@@ -207,7 +216,10 @@ class Page {
   private refresh(): void {
     const connected = this.connection.state.kind === "open";
     this.panel.showLidar(this.lidar, connected);
-    this.controls.show(this.lidars.all(), this.lidar, connected);
+    this.list.show(this.lidars.all(), this.lidar, connected);
+    this.controls.show(this.lidar, connected);
+    const trouble = this.lidar !== undefined && inTrouble(this.lidar.state);
+    this.diagnosis.offer(this.lidar, connected, trouble);
     this.tick();
   }
 

@@ -1,7 +1,10 @@
 // The panel's readouts: who the lidar is, how it is, and what the stream measures.
 import { element, setText, showText } from "./dom";
-import { stateWords, type Tone } from "./lidar_state";
+import { stateWords } from "./lidar_state";
 import { Lidar_State, type Lidar } from "./lidars";
+import { baudWords } from "./line";
+import { LinePanel } from "./line_panel";
+import { Mark } from "./marks";
 import type { Sweep } from "./sweep";
 import { decimal, duration, NONE, virtualWords, whole } from "./words";
 
@@ -12,18 +15,9 @@ export interface Measured {
   missed: number;
 }
 
-// A shape for each tone, so that the state does not rest on colour alone: disc, part of a ring, ring,
-// triangle; in a box of 24 by 24.
-const SHAPES: Record<Tone, string> = {
-  good: "M12 3a9 9 0 1 0 0 18a9 9 0 1 0 0-18z",
-  busy: "M12 2a10 10 0 1 1-10 10h4a6 6 0 1 0 6-6z",
-  rest: "M12 2a10 10 0 1 0 0 20a10 10 0 1 0 0-20zm0 4a6 6 0 1 1 0 12a6 6 0 1 1 0-12z",
-  bad: "M12 2l11 20h-22z",
-};
-
 export class Panel {
   private readonly state = element("state", HTMLElement);
-  private readonly shape = document.getElementById("state-shape")!;
+  private readonly mark = new Mark("rest");
   private readonly word = element("state-word", HTMLElement);
   private readonly since = element("state-since", HTMLElement);
   private readonly cause = element("cause", HTMLElement);
@@ -31,7 +25,7 @@ export class Panel {
   private readonly virtualNote = element("virtual-note", HTMLElement);
   private readonly virtualWords = element("virtual-words", HTMLElement);
   private readonly values = {
-    rpm: element("rpm", HTMLElement),
+    samples: element("samples-per-second", HTMLElement),
     points: element("points-per-sweep", HTMLElement),
     rate: element("sweeps-per-second", HTMLElement),
     missed: element("missed", HTMLElement),
@@ -39,7 +33,13 @@ export class Panel {
     serial: element("serial", HTMLElement),
     firmware: element("firmware", HTMLElement),
     port: element("port", HTMLElement),
+    baud: element("baud", HTMLElement),
   };
+  private readonly line = new LinePanel();
+
+  constructor() {
+    this.state.prepend(this.mark.element);
+  }
 
   /// Shows a lidar as the gateway told of it; undefined: there is none. Without a connection what it told
   /// of the state is no longer known to be so.
@@ -47,7 +47,7 @@ export class Panel {
     const known = connected ? lidar : undefined;
     const { word, tone } = stateWords(known?.state ?? Lidar_State.UNKNOWN);
     this.state.dataset["tone"] = tone;
-    this.shape.setAttribute("d", SHAPES[tone]);
+    this.mark.show(tone);
     setText(this.word, known || !connected ? word : "No lidar");
     showText(this.cause, known?.cause ?? (connected ? "The gateway knows of no lidar." : ""));
     showText(this.hint, known?.hint ?? "");
@@ -57,6 +57,8 @@ export class Panel {
     setText(this.values.serial, lidar?.device?.serialNumber || NONE);
     setText(this.values.firmware, lidar?.device?.firmware || NONE);
     setText(this.values.port, lidar?.url || NONE);
+    setText(this.values.baud, baudWords(lidar?.line));
+    this.line.show(lidar?.line);
   }
 
   /// How long the state has lasted, by this device's clock, which may differ from the gateway's.
@@ -67,8 +69,9 @@ export class Panel {
 
   /// Shows the stream's figures; those of a sweep are dashes while none comes.
   showMeasured({ sweep, sweepsPerS, missed }: Measured): void {
-    const rpm = sweep && sweep.periodS > 0 ? 60 / sweep.periodS : undefined;
-    setText(this.values.rpm, decimal(rpm, 0));
+    const perS = sweep && sweep.periodS > 0 ? sweep.samples / sweep.periodS : undefined;
+    // To three digits: the fourth would never stand still.
+    setText(this.values.samples, perS === undefined ? NONE : whole(Number(perS.toPrecision(3))));
     const points = sweep && `${whole(sweep.x.length)} / ${whole(sweep.samples)}`;
     setText(this.values.points, points ?? NONE);
     setText(this.values.rate, decimal(sweepsPerS, 1));

@@ -34,11 +34,24 @@ export function echoWords(echo: Echo): string {
   return `${echo.angleDeg.toFixed(2)}°  ${echo.distanceM.toFixed(3)} m  quality ${echo.quality}`;
 }
 
+/// A scan mode in the picker's list: "Express – 4 kHz, 12 m (typical)", as far as these are known.
+export function modeOption(mode: ScanMode): string {
+  const rate = mode.samplesPerSecond > 0 ? kilohertz(mode.samplesPerSecond) : "";
+  const reach = mode.maxDistanceM > 0 ? `${decimal(mode.maxDistanceM, 0)} m` : "";
+  const facts = [rate, reach].filter((part) => part !== "").join(", ");
+  return `${mode.name}${facts && ` – ${facts}`}${mode.typical ? " (typical)" : ""}`;
+}
+
 /// A scan mode for the picker's explanation: "4,000 samples/s, up to 12 m".
 export function modeWords(mode: ScanMode): string {
   const rate = mode.samplesPerSecond > 0 ? `${whole(mode.samplesPerSecond)} samples/s` : "";
   const reach = mode.maxDistanceM > 0 ? `up to ${decimal(mode.maxDistanceM, 0)} m` : "";
   return [rate, reach].filter((part) => part !== "").join(", ");
+}
+
+// Three digits are enough: "4 kHz", "15.9 kHz".
+function kilohertz(perS: number): string {
+  return `${Number((perS / 1000).toPrecision(3))} kHz`;
 }
 
 /// The sweep in a sentence, for who cannot see the drawing. `live`: it is what the lidar sees now.
@@ -64,5 +77,7 @@ export function summary(
 /// What to know of a virtual lidar; empty for a real one.
 export function virtualWords(lidar: Lidar | undefined): string {
   if (!lidar?.isVirtual) return "";
-  return lidar.isStandIn ? "no scanner was found, this is a simulated room." : "this is a simulated room.";
+  return lidar.isStandIn
+    ? "no scanner was found, this is a simulated room."
+    : "this is a simulated room.";
 }
