@@ -1,4 +1,5 @@
 // The one binary: its subcommands, and the last resort for what they throw.
+#include "server/cli/capture_command.hpp"
 #include "server/cli/command.hpp"
 #include "server/cli/decode_command.hpp"
 #include "server/cli/virtual_command.hpp"
@@ -28,6 +29,7 @@ int run(int argc, char** argv) {
     sweepcast::cli::add_watch_command(app, exit_code);
     sweepcast::cli::add_virtual_command(app, exit_code);
     sweepcast::cli::add_probe_command(app, exit_code);
+    sweepcast::cli::add_capture_command(app, exit_code);
     sweepcast::cli::add_decode_command(app, exit_code);
     try {
         app.parse(argc, argv);

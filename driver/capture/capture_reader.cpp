@@ -89,7 +89,7 @@ Result<CaptureReader, Problem> CaptureReader::open(std::istream& in) {
     if (!first || !is_capture(*first)) {
         return unreadable(
             "this is no capture of sweepcast",
-            "make one with: sweepcast capture PORT --out FILE"
+            "make one with: sweepcast capture PORT -o FILE"
         );
     }
     if (first->substr(magic.size()) != std::to_string(version)) {

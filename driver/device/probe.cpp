@@ -18,15 +18,6 @@ namespace asio = boost::asio;
 
 namespace {
 
-std::vector<std::uint32_t>
-bauds_for(const link::LinkUrl& url, const std::vector<std::uint32_t>& hints) {
-    const auto* port = std::get_if<link::SerialPlace>(&url.where);
-    if (port != nullptr && port->baud) {
-        return {*port->baud};
-    }
-    return bauds_to_try(hints);
-}
-
 Problem
 no_lidar(const error_code& failure, const link::LinkUrl& url, std::vector<std::uint32_t> bauds) {
     auto problem = advice(failure);
@@ -43,6 +34,15 @@ no_lidar(const error_code& failure, const link::LinkUrl& url, std::vector<std::u
 
 }  // namespace
 
+std::vector<std::uint32_t>
+bauds_for(const link::LinkUrl& url, const std::vector<std::uint32_t>& hints) {
+    const auto* port = std::get_if<link::SerialPlace>(&url.where);
+    if (port != nullptr && port->baud) {
+        return {*port->baud};
+    }
+    return bauds_to_try(hints);
+}
+
 asio::awaitable<Result<Probed, Problem>>
 probe(asio::any_io_executor executor, link::LinkUrl url, std::vector<std::uint32_t> baud_hints) {
     const auto bauds = bauds_for(url, baud_hints);
@@ -51,6 +51,11 @@ probe(asio::any_io_executor executor, link::LinkUrl url, std::vector<std::uint32
         co_return link.error();
     }
     Conversation talk(**link);
+    co_return co_await probe_open(talk, std::move(url), bauds);
+}
+
+asio::awaitable<Result<Probed, Problem>>
+probe_open(Conversation& talk, link::LinkUrl url, std::vector<std::uint32_t> bauds) {
     const auto found = co_await find_baud(talk, bauds);
     if (!found) {
         co_return no_lidar(found.error(), url, bauds);

@@ -1,6 +1,7 @@
 // Probe: is there a lidar at this port, and which one?
 #pragma once
 
+#include "driver/device/conversation.hpp"
 #include "driver/device/identify.hpp"
 #include "driver/link/link_url.hpp"
 #include "driver/protocol/result.hpp"
@@ -31,6 +32,16 @@ boost::asio::awaitable<Result<Probed, Problem>> probe(
     link::LinkUrl url,
     std::vector<std::uint32_t> baud_hints
 );
+
+/// The line speeds at which a lidar at `url` is looked for, the first ones first: the one in the
+/// URL alone if it has one, else `hints` and then the usual ones.
+[[nodiscard]] std::vector<std::uint32_t>
+bauds_for(const link::LinkUrl& url, const std::vector<std::uint32_t>& hints);
+
+/// As probe(), over a link to `url` that is open and stays so, at the speed of the lidar. `bauds`
+/// are the line speeds to try.
+boost::asio::awaitable<Result<Probed, Problem>>
+probe_open(Conversation& talk, link::LinkUrl url, std::vector<std::uint32_t> bauds);
 
 /// A port where a lidar answered.
 struct Discovered {

@@ -3,10 +3,12 @@
 #include <boost/system/errc.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <fcntl.h>
 #include <unistd.h>
+#include <utility>
 
 namespace sweepcast::cli {
 
@@ -18,7 +20,8 @@ Problem cannot_read(const std::string& name, int number) {
     return {
         code,
         fmt::format("cannot read {}: {}", name, code.message()),
-        missing ? "name a file with raw measurement bytes, or - for standard input" : ""};
+        missing ? "name a capture or a file with raw measurement bytes, or - for standard input"
+                : ""};
 }
 
 class FileSource final : public ByteSource {
@@ -62,6 +65,36 @@ Result<std::unique_ptr<ByteSource>, Problem> open_byte_source(const std::string&
         return cannot_read(path, errno);
     }
     return std::make_unique<FileSource>(path, descriptor);
+}
+
+Result<bool, Problem> PeekSource::begins_with(std::string_view text) {
+    const auto differs = [&] {
+        return !std::equal(
+            seen_.begin(),
+            seen_.begin() + static_cast<std::ptrdiff_t>(std::min(seen_.size(), text.size())),
+            text.begin(),
+            [](std::uint8_t byte, char c) { return byte == static_cast<std::uint8_t>(c); }
+        );
+    };
+    while (seen_.size() < text.size() && !differs()) {
+        const auto block = source_->next();
+        if (!block) {
+            return block.error();
+        }
+        if (block->empty()) {
+            return false;
+        }
+        seen_.insert(seen_.end(), block->begin(), block->end());
+    }
+    return !differs();
+}
+
+Result<std::span<const std::uint8_t>, Problem> PeekSource::next() {
+    if (seen_.empty()) {
+        return source_->next();
+    }
+    given_ = std::exchange(seen_, {});
+    return std::span<const std::uint8_t>(given_);
 }
 
 }  // namespace sweepcast::cli

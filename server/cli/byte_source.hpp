@@ -7,6 +7,9 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace sweepcast::cli {
 
@@ -22,5 +25,22 @@ public:
 /// The bytes of a file, pipe or device as they are; "-" is standard input.
 [[nodiscard]] Result<std::unique_ptr<ByteSource>, Problem> open_byte_source(const std::string& path
 );
+
+/// A source whose beginning can be looked at before it is read.
+class PeekSource final : public ByteSource {
+public:
+    explicit PeekSource(std::unique_ptr<ByteSource> source) : source_(std::move(source)) {}
+
+    /// Whether the source begins with `text`. Reads no further than it takes to tell. To be called
+    /// before next().
+    Result<bool, Problem> begins_with(std::string_view text);
+
+    Result<std::span<const std::uint8_t>, Problem> next() override;
+
+private:
+    std::unique_ptr<ByteSource> source_;
+    std::vector<std::uint8_t> seen_;  ///< still to be given
+    std::vector<std::uint8_t> given_;
+};
 
 }  // namespace sweepcast::cli

@@ -1,10 +1,13 @@
 #include "server/cli/decode_command.hpp"
 
+#include "driver/capture/capture_reader.hpp"
+#include "driver/capture/stream_finder.hpp"
 #include "driver/protocol/decode.hpp"
-#include "driver/protocol/sweep.hpp"
 #include "server/cli/answer_type_names.hpp"
 #include "server/cli/byte_source.hpp"
 #include "server/cli/command.hpp"
+#include "server/cli/sample_printer.hpp"
+#include "server/cli/source_stream.hpp"
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
@@ -12,201 +15,243 @@
 #include <boost/system/errc.hpp>
 #include <fmt/format.h>
 
-#include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 
 namespace sweepcast::cli {
 
 namespace {
 
-using protocol::AnswerType;
+using capture::CaptureReader;
 using protocol::Decoded;
-using protocol::DecodeEventKind;
-using protocol::Sample;
 
 constexpr const char* footer = R"(
+A capture, as `sweepcast capture` writes it, tells itself what it holds: its measurement streams are decoded one
+after the other. Anything else is taken as the bytes of one stream, without its descriptor, and needs --type.
+
 Prints a header line and then a line a sample, in the units of the line: angles in 1/65536 turn, distances in
 quarter millimetres (0: no echo). Bit 0 of the flag is set where a revolution begins. What was damaged is told on
 standard error. A capsule (0x82, 0x84, 0x85, 0x86) is complete with the beginning of the next one, so the samples
 of the last one do not come out.
 
 Examples:
+  sweepcast decode bug.sweepcast > scan.csv
+  zstd -dc bug.sweepcast.zst | sweepcast decode --units
   sweepcast decode --type 0x84 --sample-us 63 scan.bin > scan.csv
-  sweepcast decode --type dense --sample-us 31 --units scan.bin
   cat /tmp/recorded | sweepcast decode --type 82 | head)";
 
 struct DecodeArguments {
     std::string path{"-"};
     std::string type;
-    std::uint32_t sample_us{};
+    std::optional<std::uint32_t> sample_us;
     bool units{};
 };
 
-/// Prints samples and counts what comes out.
-class Printer {
-public:
-    explicit Printer(bool units) : units_(units) {
-        text_ = units ? "angle_deg,distance_mm,quality,flag\n"
-                      : "angle_z_q14,dist_mm_q2,quality,flag\n";
+/// What is wrong with standard output, if anything.
+Result<void, Problem> print(SamplePrinter& printer, const Decoded& decoded) {
+    if (const auto failed = printer.print(decoded)) {
+        return Problem{failed, "cannot write to standard output: " + failed.message(), ""};
     }
+    return {};
+}
 
-    /// Why standard output took no more, if it did not.
-    error_code print(const Decoded& decoded) {
-        for (const auto& sample : decoded.samples) {
-            add(sample);
-        }
-        samples_ += decoded.samples.size();
-        for (const auto& event : decoded.events) {
-            count(event);
-        }
-        const bool written = std::fwrite(text_.data(), 1, text_.size(), stdout) == text_.size();
-        text_.clear();
-        if (!written || std::fflush(stdout) != 0) {
-            return {errno, boost::system::generic_category()};
-        }
-        return {};
+Problem no_samples(std::string cause, std::string hint) {
+    return {
+        make_error_code(boost::system::errc::invalid_argument),
+        std::move(cause),
+        std::move(hint)};
+}
+
+/// Decodes all of `source`, which holds the bytes of one stream.
+Result<void, Problem>
+decode_raw(ByteSource& source, const DecodeArguments& arguments, SamplePrinter& printer) {
+    if (arguments.type.empty()) {
+        return Problem{
+            make_error_code(boost::system::errc::invalid_argument),
+            arguments.path + " is no capture, so its answer type must be told",
+            "give --type, one of " + known_answer_types()};
     }
-
-    [[nodiscard]] std::uint64_t samples() const { return samples_; }
-
-    void summarize() const {
-        fmt::print(
-            stderr,
-            "sweepcast: {} samples; {} checksum errors, {} bytes skipped, {} packets lost\n",
-            samples_,
-            losses_.checksum_errors,
-            losses_.skipped_bytes,
-            losses_.lost_packets
-        );
+    const auto type = parse_answer_type(arguments.type);
+    if (!type) {
+        return type.error();
     }
-
-private:
-    void add(const Sample& sample) {
-        const auto out = std::back_inserter(text_);
-        const int quality = sample.quality;
-        const int flag = sample.flag;
-        if (units_) {
-            // Enough digits to give back the lidar's own units.
-            const auto degrees = sample.angle.degrees();
-            const auto mm = sample.distance.millimetres();
-            fmt::format_to(out, "{:.4f},{:.2f},{},{}\n", degrees, mm, quality, flag);
-        } else {
-            const auto angle = sample.angle.raw;
-            fmt::format_to(out, "{},{},{},{}\n", angle, sample.distance.raw, quality, flag);
-        }
-    }
-
-    void count(const protocol::DecodeEvent& event) {
-        switch (event.kind) {
-        case DecodeEventKind::checksum_error:
-            losses_.checksum_errors += event.count;
-            break;
-        case DecodeEventKind::bytes_skipped:
-            losses_.skipped_bytes += event.count;
-            break;
-        case DecodeEventKind::packets_lost:
-            losses_.lost_packets += event.count;
-            break;
-        case DecodeEventKind::encoder_reset:
-        case DecodeEventKind::scan_reset:
-            break;  // no damage
-        }
-    }
-
-    bool units_;
-    std::string text_;
-    std::uint64_t samples_{};
-    protocol::LineLosses losses_;
-};
-
-/// Decodes all of `source`. Gives back how many bytes it held.
-Result<std::uint64_t, Problem>
-decode_all(ByteSource& source, protocol::Decoder& decoder, Printer& printer) {
+    const std::chrono::microseconds sample_duration(arguments.sample_us.value_or(0));
+    auto decoder = protocol::Decoder::create(*type, {.sample_duration = sample_duration});
     Decoded decoded;
     std::uint64_t bytes = 0;
-    while (true) {
+    for (bool ended = false; !ended;) {
         const auto block = source.next();
         if (!block) {
             return block.error();
         }
         decoded.clear();
-        decoder.push(*block, {}, decoded);
-        if (const auto failed = printer.print(decoded)) {
-            return Problem{failed, "cannot write to standard output: " + failed.message(), ""};
+        decoder->push(*block, {}, decoded);
+        if (auto printed = print(printer, decoded); !printed) {
+            return printed;
         }
-        if (block->empty()) {
-            return bytes;
-        }
+        ended = block->empty();
         bytes += block->size();
-    }
-}
-
-int decode(const DecodeArguments& arguments) {
-    const auto type = parse_answer_type(arguments.type);
-    if (!type) {
-        return report(type.error());
-    }
-    const auto source = open_byte_source(arguments.path);
-    if (!source) {
-        return report(source.error());
-    }
-    std::signal(SIGPIPE, SIG_IGN);  // a reader that goes is an error of a write
-    auto decoder = protocol::Decoder::create(
-        *type,
-        {.sample_duration = std::chrono::microseconds{arguments.sample_us}}
-    );
-    Printer printer(arguments.units);
-    const auto bytes = decode_all(**source, decoder.value(), printer);
-    if (!bytes && bytes.error().code == boost::system::errc::broken_pipe) {
-        return 1;  // the reader has had enough, as `| head`: nothing to tell anyone
-    }
-    if (!bytes) {
-        return report(bytes.error());
     }
     printer.summarize();
     if (printer.samples() == 0) {
-        return report(
-            {make_error_code(boost::system::errc::invalid_argument),
-             fmt::format("no samples of type {} in {} bytes", shown_answer_type(*type), *bytes),
-             "is it another type? Known are " + known_answer_types()}
+        return no_samples(
+            fmt::format("no samples of type {} in {} bytes", shown_answer_type(*type), bytes),
+            "is it another type? Known are " + known_answer_types()
         );
     }
-    return 0;
+    return {};
+}
+
+void introduce(const capture::CaptureHeader& header) {
+    fmt::print(
+        stderr,
+        "sweepcast: {} {}, firmware {}, mode {}, captured at {} by {}\n",
+        header.model,
+        header.serial.substr(0, 8),
+        header.firmware,
+        header.mode,
+        header.started,
+        header.program
+    );
+}
+
+/// Decodes the streams of a capture, one after the other. Gives back how the capture ended.
+Result<CaptureReader::End, Problem> decode_streams(
+    CaptureReader& reader,
+    std::chrono::microseconds sample_duration,
+    SamplePrinter& printer
+) {
+    capture::StreamFinder finder;
+    std::optional<protocol::Decoder> decoder;
+    Decoded decoded;
+    while (const auto record = reader.next()) {
+        const auto block = finder.push(*record);
+        if (!block) {
+            continue;
+        }
+        if (block->begins) {
+            auto made =
+                protocol::Decoder::create(block->type, {.sample_duration = sample_duration});
+            if (!made) {
+                return Problem{
+                    made.error(),
+                    fmt::format("a stream of type {}", shown_answer_type(block->type)),
+                    "known are " + known_answer_types()};
+            }
+            decoder.emplace(std::move(*made));
+        }
+        decoded.clear();
+        decoder->push(block->bytes, {}, decoded);
+        if (auto printed = print(printer, decoded); !printed) {
+            return printed.error();
+        }
+    }
+    return reader.end();
+}
+
+Result<void, Problem>
+decode_capture(ByteSource& source, const DecodeArguments& arguments, SamplePrinter& printer) {
+    if (!arguments.type.empty()) {
+        return Problem{
+            make_error_code(boost::system::errc::invalid_argument),
+            arguments.path + " is a capture, which tells its answer types itself",
+            "leave --type out"};
+    }
+    SourceStream in(source);
+    auto reader = CaptureReader::open(in);
+    if (!reader) {
+        return in.problem().value_or(reader.error());
+    }
+    introduce(reader->header());
+    const auto sample_duration =
+        arguments.sample_us
+            ? std::chrono::microseconds(*arguments.sample_us)
+            : std::chrono::round<std::chrono::microseconds>(reader->header().sample_duration);
+    const auto end = decode_streams(*reader, sample_duration, printer);
+    if (!end) {
+        return end.error();
+    }
+    if (in.problem()) {
+        return *in.problem();
+    }
+    printer.summarize();
+    if (*end == CaptureReader::End::damaged) {
+        return no_samples(
+            "the capture is damaged: what follows is not known",
+            "what came before was decoded"
+        );
+    }
+    if (*end == CaptureReader::End::cut_short) {
+        fmt::print(
+            stderr,
+            "sweepcast: the capture ends inside a record; all before that was decoded\n"
+        );
+    }
+    if (printer.samples() == 0) {
+        return no_samples(
+            "there are no samples in this capture",
+            "capture for some seconds longer"
+        );
+    }
+    return {};
+}
+
+int decode(const DecodeArguments& arguments) {
+    auto opened = open_byte_source(arguments.path);
+    if (!opened) {
+        return report(opened.error());
+    }
+    std::signal(SIGPIPE, SIG_IGN);  // a reader that goes is an error of a write
+    PeekSource source(std::move(*opened));
+    const auto is_capture = source.begins_with(capture::magic);
+    if (!is_capture) {
+        return report(is_capture.error());
+    }
+    SamplePrinter printer(arguments.units);
+    const auto decoded = *is_capture ? decode_capture(source, arguments, printer)
+                                     : decode_raw(source, arguments, printer);
+    if (!decoded && decoded.error().code == boost::system::errc::broken_pipe) {
+        return 1;  // the reader has had enough, as `| head`: nothing to tell anyone
+    }
+    return decoded ? 0 : report(decoded.error());
 }
 
 }  // namespace
 
 void add_decode_command(CLI::App& app, int& exit_code) {
     auto arguments = std::make_shared<DecodeArguments>();
-    auto& command =
-        *app.add_subcommand("decode", "Decode raw measurement bytes from a file or a pipe to CSV");
+    auto& command = *app.add_subcommand(
+        "decode",
+        "Decode a capture, or raw measurement bytes, from a file or a pipe to CSV"
+    );
     command
         .add_option(
             "file",
             arguments->path,
-            "The bytes that followed the descriptor of a measurement stream; - is standard input"
+            "A capture, or the bytes that followed a measurement stream's descriptor; - is "
+            "standard "
+            "input"
         )
         ->capture_default_str();
-    command
-        .add_option(
-            "--type",
-            arguments->type,
-            "Answer type, by number or name: " + known_answer_types()
-        )
-        ->required();
+    command.add_option(
+        "--type",
+        arguments->type,
+        "Answer type of raw bytes, by number or name: " + known_answer_types()
+    );
     command
         .add_option(
             "--sample-us",
             arguments->sample_us,
             "Microseconds from sample to sample, as the mode has it; dense capsules (0x85, 0x86) "
-            "that turn faster than this allows are left out. 0: not known"
+            "that turn faster than this allows are left out. 0: not known (default: as the capture "
+            "says)"
         )
-        ->check(CLI::Range(0, 1'000'000))
-        ->capture_default_str();
+        ->check(CLI::Range(0, 1'000'000));
     command.add_flag("--units", arguments->units, "Print degrees and millimetres");
     command.footer(footer);
     command.callback([arguments, &exit_code] { exit_code = decode(*arguments); });

@@ -1,4 +1,4 @@
-// `sweepcast decode`: the samples in raw measurement bytes.
+// `sweepcast decode`: the samples in a capture or in raw measurement bytes.
 #pragma once
 
 namespace CLI {

@@ -1,7 +1,6 @@
 #include "server/cli/stop_signals.hpp"
 
 #include <boost/asio/bind_cancellation_slot.hpp>
-#include <boost/asio/cancellation_signal.hpp>
 #include <boost/asio/co_spawn.hpp>
 
 #include <csignal>
@@ -22,13 +21,28 @@ StopSignals::StopSignals() : signals_(context_, SIGINT, SIGTERM) {
 }
 
 bool StopSignals::run(asio::awaitable<void> task) {
+    asio::cancellation_signal cancel;
+    return run(std::move(task), cancel, [&cancel] {
+        cancel.emit(asio::cancellation_type::terminal);
+    });
+}
+
+bool StopSignals::run(asio::awaitable<void> task, const std::function<void()>& stop) {
+    asio::cancellation_signal unused;
+    return run(std::move(task), unused, stop);
+}
+
+bool StopSignals::run(
+    asio::awaitable<void> task,
+    asio::cancellation_signal& cancel,
+    const std::function<void()>& stop
+) {
     context_.poll();  // a signal may have come since the last step
     if (told_) {
         return false;
     }
     bool ended = false;
     std::exception_ptr failure;
-    asio::cancellation_signal cancel;
     asio::co_spawn(
         context_,
         std::move(task),
@@ -43,11 +57,13 @@ bool StopSignals::run(asio::awaitable<void> task) {
     while (!ended && !told_) {
         context_.run_one();
     }
+    if (told_ && !ended) {
+        stop();
+    }
+    while (!ended) {
+        context_.run_one();
+    }
     if (told_) {
-        cancel.emit(asio::cancellation_type::terminal);
-        while (!ended) {
-            context_.run_one();
-        }
         return false;
     }
     if (failure) {

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <boost/asio/awaitable.hpp>
+#include <boost/asio/cancellation_signal.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
+
+#include <functional>
 
 namespace sweepcast::cli {
 
@@ -17,6 +20,10 @@ public:
     /// False if told to stop. Rethrows what the task ended with unless told to stop.
     bool run(boost::asio::awaitable<void> task);
 
+    /// The same for a task that has something to finish: it is not cancelled but asked by `stop`,
+    /// and has all the time it needs.
+    bool run(boost::asio::awaitable<void> task, const std::function<void()>& stop);
+
     /// Returns when told to stop.
     void wait();
 
@@ -24,6 +31,12 @@ public:
     [[nodiscard]] boost::asio::any_io_executor executor() { return context_.get_executor(); }
 
 private:
+    bool run(
+        boost::asio::awaitable<void> task,
+        boost::asio::cancellation_signal& cancel,
+        const std::function<void()>& stop
+    );
+
     boost::asio::io_context context_;
     boost::asio::signal_set signals_;
     bool told_{};

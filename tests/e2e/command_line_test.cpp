@@ -29,7 +29,7 @@ Outcome call(std::vector<std::string> arguments) {
 }
 
 TEST(CommandLine, HelpHasExamplesForEveryCommand) {
-    for (const auto* command : {"serve", "watch", "virtual", "probe", "decode"}) {
+    for (const auto* command : {"serve", "watch", "virtual", "probe", "capture", "decode"}) {
         const auto help = call({command, "--help"});
         EXPECT_EQ(help.exit_code, 0) << command;
         EXPECT_THAT(help.output, HasSubstr("Example")) << command;
@@ -71,6 +71,12 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{{"serve", "--lidar", "virtual:a1m8?fault=nonsense"}, "protection-stop"},
         Mistake{{"probe", "/nonexistent"}, "/nonexistent"},
         Mistake{{"probe", "/etc/passwd"}, "/etc/passwd"},
+        Mistake{{"capture", "/nonexistent"}, "/nonexistent"},
+        Mistake{{"capture", "/nonexistent", "-o", "/etc"}, "cannot write /etc: Is a directory"},
+        Mistake{{"capture", "/nonexistent", "-o", "/nonexistent/file"}, "No such file"},
+        Mistake{{"capture", "/nonexistent", "-o", "/etc/passwd"}, "/etc/passwd exists already"},
+        Mistake{{"capture", "/nonexistent", "--seconds", "0"}, "--seconds"},
+        Mistake{{"capture", "udp://127.0.0.1:1", "--baud", "115200"}, "serial ports"},
         Mistake{{"decode", "/etc/passwd"}, "--type"},
         Mistake{{"decode", "--type", "x", "/etc/passwd"}, "0x84 (ultra)"},
         Mistake{{"decode", "--type", "84", "/nonexistent"}, "/nonexistent"},

@@ -1,11 +1,13 @@
 // StopSignals: real signals, to this very process.
 #include "server/cli/stop_signals.hpp"
 
+#include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <csignal>
 #include <stdexcept>
 
@@ -51,6 +53,25 @@ TEST(StopSignals, ASignalEndsATaskThatWaits) {
     EXPECT_TRUE(begun);
     EXPECT_FALSE(finished);
     signals.wait();  // told already
+}
+
+TEST(StopSignals, ATaskThatIsAskedFinishesWhatItHasBegun) {
+    StopSignals signals;
+    bool begun = false;
+    bool finished = false;
+    asio::steady_timer until_asked(signals.executor(), asio::steady_timer::duration::max());
+    const auto work = [&]() -> asio::awaitable<void> {
+        begun = true;
+        std::raise(SIGTERM);
+        boost::system::error_code asked;
+        co_await until_asked.async_wait(asio::redirect_error(asio::use_awaitable, asked));
+        asio::steady_timer farewell(signals.executor(), std::chrono::milliseconds(1));
+        co_await farewell.async_wait(asio::use_awaitable);
+        finished = true;
+    };
+    EXPECT_FALSE(signals.run(work(), [&until_asked] { until_asked.cancel(); }));
+    EXPECT_TRUE(begun);
+    EXPECT_TRUE(finished);
 }
 
 TEST(StopSignals, ASignalBeforeATaskKeepsItFromStarting) {
