@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Lists the C++ sources that are not formatted as .clang-format says; exit code 1 if any. format.sh --fix formats them.
+# Shows where C++ sources are not formatted as .clang-format says; exit code 1 if anywhere. format.sh --fix formats them.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
@@ -8,11 +8,8 @@ if [[ ${1:-} == --fix ]]; then
     clang-format --style=file -i "${sources[@]}"
     exit
 fi
-status=0
-for source in "${sources[@]}"; do
-    if ! clang-format --style=file "$source" | cmp --silent - "$source"; then
-        printf '%s is not formatted (tests/lint/format.sh --fix formats all)\n' "$source"
-        status=1
-    fi
-done
-exit "$status"
+# One process for all: starting one a file takes longer than all the work.
+if ! clang-format --style=file --dry-run -Werror "${sources[@]}"; then
+    printf 'tests/lint/format.sh --fix formats all\n'
+    exit 1
+fi
