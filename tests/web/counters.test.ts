@@ -32,27 +32,37 @@ test("what went by while nothing was asked for is no gap", () => {
 
 test("the rate is that of the last seconds", () => {
   const meter = new RateMeter();
-  for (let k = 0; k <= 100; ++k) meter.tick(k * 0.5);
-  for (let k = 1; k <= 40; ++k) meter.tick(50 + k * 0.1);
-  assert.ok(Math.abs(meter.rate(54)! - 10) < 1e-6);
+  for (let k = 0; k <= 100; ++k) meter.see(k * 0.5);
+  for (let k = 1; k <= 40; ++k) meter.see(50 + k * 0.1);
+  assert.ok(Math.abs(meter.rate! - 10) < 1e-6);
 });
 
-test("once is no rate", () => {
+test("nothing and once are no rate", () => {
   const meter = new RateMeter();
-  meter.tick(1);
-  assert.equal(meter.rate(1), undefined);
+  assert.equal(meter.rate, undefined);
+  meter.see(1000);
+  assert.equal(meter.rate, undefined);
 });
 
-test("a burst is no rate", () => {
+test("less than a second says nothing", () => {
   const meter = new RateMeter();
-  for (let k = 0; k < 10; ++k) meter.tick(k * 0.01);
-  assert.equal(meter.rate(0.1), undefined);
+  for (let k = 0; k < 10; ++k) meter.see(k * 0.1);
+  assert.equal(meter.rate, undefined);
+  meter.see(1);
+  assert.equal(meter.rate, 10);
 });
 
-test("what has ended has no rate", () => {
+test("sweeps that were missed make the rate smaller", () => {
   const meter = new RateMeter();
-  meter.tick(1);
-  meter.tick(2);
-  assert.equal(meter.rate(2.1), 1);
-  assert.equal(meter.rate(5.1), undefined);
+  for (const time of [0, 0.5, 1.5, 2]) meter.see(time);
+  assert.equal(meter.rate, 1.5);
+});
+
+test("after a pause, and with a clock that begins anew, so does the count", () => {
+  const meter = new RateMeter();
+  for (let k = 0; k < 30; ++k) meter.see(100 + k * 0.1);
+  meter.see(200);
+  assert.equal(meter.rate, undefined);
+  for (let k = 0; k <= 10; ++k) meter.see(k * 0.2);
+  assert.equal(meter.rate, 5);
 });

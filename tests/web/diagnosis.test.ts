@@ -43,6 +43,14 @@ test("where nothing is wrong that is the headline", () => {
   assert.equal(headline(fine), "Nothing is wrong.");
 });
 
+test("what was not checked is not claimed to be right", () => {
+  const fine = create(DiagnosisSchema, {
+    verdict: Diagnosis_Verdict.OK,
+    checks: [{ verdict: Diagnosis_Verdict.OK }, { verdict: Diagnosis_Verdict.NOT_RUN }],
+  });
+  assert.match(headline(fine), /so far/);
+});
+
 test("without a cause the check that went wrong is the headline", () => {
   const diagnosis = create(DiagnosisSchema, {
     verdict: Diagnosis_Verdict.WARNING,

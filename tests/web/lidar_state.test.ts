@@ -1,7 +1,7 @@
 // What the page says of each state, and what it offers in it.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { buttonsFor, inTrouble, stateWords, type Action } from "../../web/src/lidar_state";
+import { buttonsFor, stateWords, type Action } from "../../web/src/lidar_state";
 import { Lidar_State } from "../../web/src/lidars";
 
 const STATES = Object.values(Lidar_State).filter(
@@ -53,11 +53,6 @@ test("while a command runs no other may be given, but a start may be called off"
 test("while the mode is being changed the scan can be stopped, and that is all", () => {
   assert.deepEqual(offered(Lidar_State.SCANNING, { pending: "mode" }), ["stop"]);
   assert.deepEqual(offered(Lidar_State.IDLE, { pending: "mode" }), []);
-});
-
-test("a lidar that someone must look after is in trouble, one that works or rests is not", () => {
-  const troubled = STATES.filter(inTrouble).map((state) => Lidar_State[state]);
-  assert.deepEqual(troubled, ["DISCONNECTED", "PROTECTION_STOP", "FAILED"]);
 });
 
 test("a command under way shows on its button", () => {

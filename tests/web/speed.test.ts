@@ -21,7 +21,7 @@ test("a speed that is reached is told with its figure in Hz and rpm", () => {
 });
 
 for (const [name, fields, scanning, aim, mark] of [
-  ["on its way", { ...regulated, measuredHz: 7 }, true, "Changing to 10.0 Hz", "busy"],
+  ["on its way", { ...regulated, measuredHz: 7 }, true, "Settling at 10.0 Hz", "busy"],
   ["not yet measured", regulated, true, "Measuring, 10.0 Hz wanted", "busy"],
   ["of a lidar at rest", regulated, false, "Wanted: 10.0 Hz", "rest"],
   [

@@ -20,25 +20,25 @@ export class SequenceCounter {
 }
 
 const WINDOW_S = 3;
-/// Frames arrive in bursts, so less than this says nothing.
+/// Less than this says nothing.
 const LEAST_S = 1;
 
-/// Frequency of something that happens again and again, over the last seconds.
+/// How many sweeps come a second, by the lidar's own times: how unevenly they arrive is no matter.
 export class RateMeter {
   private times: number[] = [];
 
-  /// Takes note that it happened at `now` (seconds).
-  tick(now: number): void {
-    this.times.push(now);
-    this.times = this.times.filter((time) => now - time <= WINDOW_S);
+  /// Takes note of a sweep that began at `start` (seconds). A time that does not grow begins a new count.
+  see(start: number): void {
+    const last = this.times[this.times.length - 1];
+    if (last !== undefined && start <= last) this.times = [];
+    this.times.push(start);
+    this.times = this.times.filter((time) => start - time <= WINDOW_S);
   }
 
-  /// Times a second; undefined if it is not happening (any more), or too new to say.
-  rate(now: number): number | undefined {
-    const first = this.times[0];
-    const last = this.times[this.times.length - 1];
-    if (first === undefined || last === undefined) return undefined;
-    if (last - first < LEAST_S || now - last > WINDOW_S) return undefined;
-    return (this.times.length - 1) / (last - first);
+  /// Sweeps a second; undefined while it is too new to say.
+  get rate(): number | undefined {
+    const first = this.times[0] ?? 0;
+    const span = (this.times[this.times.length - 1] ?? 0) - first;
+    return span < LEAST_S ? undefined : (this.times.length - 1) / span;
   }
 }

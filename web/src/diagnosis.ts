@@ -28,7 +28,10 @@ export function verdictWords(verdict: Diagnosis_Verdict): VerdictWords {
 /// What is wrong in one sentence, or that nothing is.
 export function headline(diagnosis: Diagnosis): string {
   if (diagnosis.cause !== "") return sentence(diagnosis.cause);
-  if (diagnosis.verdict === Diagnosis_Verdict.OK) return "Nothing is wrong.";
+  if (diagnosis.verdict === Diagnosis_Verdict.OK) {
+    const skipped = diagnosis.checks.some((check) => check.verdict === Diagnosis_Verdict.NOT_RUN);
+    return skipped ? "Nothing is wrong so far; not all could be checked." : "Nothing is wrong.";
+  }
   const worst = diagnosis.checks.find((check) => check.verdict === diagnosis.verdict);
   return worst
     ? sentence(`${verdictWords(worst.verdict).word}: ${worst.title}`)

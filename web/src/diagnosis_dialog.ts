@@ -91,7 +91,7 @@ export class DiagnosisDialog {
     this.progress.hidden = false;
     this.again.setAttribute("aria-disabled", "true");
     this.outcomeMark.show("busy");
-    setText(this.outcomeWords, "Looking from the port to the first sweep…");
+    setText(this.outcomeWords, "Looking for what is wrong…");
     this.hint.hidden = true;
     this.findings.replaceChildren();
     this.checks.replaceChildren();

@@ -81,11 +81,6 @@ export function buttonsFor(situation: Situation): Record<Action, Button> {
   };
 }
 
-/// Whether the lidar is in a state that someone must do something about.
-export function inTrouble(state: Lidar_State): boolean {
-  return stateWords(state).tone === "bad";
-}
-
 const RESETTABLE: ReadonlySet<Lidar_State> = new Set([
   Lidar_State.IDLE,
   Lidar_State.SCANNING,

@@ -10,7 +10,6 @@ import { element, setText, showText } from "./dom";
 import { listenToGestures, ZOOM_STEP } from "./gestures";
 import { Legend } from "./legend";
 import { LidarList } from "./lidar_list";
-import { inTrouble } from "./lidar_state";
 import { Lidar_State, Lidars, type Lidar } from "./lidars";
 import { encodeSubscribe, openFrame, type Frame, type ServerMessage } from "./messages";
 import { Panel } from "./panel";
@@ -193,12 +192,11 @@ class Page {
     }
     const now = seconds();
     const wasLive = this.live();
-    // The first is the latest there was, sent at once: it did not come at its own time.
-    if (this.fresh) this.meter.tick(now);
     this.arrivedS = now;
     this.fresh = true;
     this.sequence = frame.sequence;
     this.counter.see(frame.sequence);
+    this.meter.see(this.sweep.startS);
     this.scene.show(this.sweep);
     if (this.sweep.qualityMeasured !== qualityMeasured) this.recolour();
     if (!wasLive) this.refresh();
@@ -218,7 +216,7 @@ class Page {
     this.panel.showLidar(this.lidar, connected);
     this.list.show(this.lidars.all(), this.lidar, connected);
     this.controls.show(this.lidar, connected);
-    const trouble = this.lidar !== undefined && inTrouble(this.lidar.state);
+    const trouble = this.lidar !== undefined && this.lidars.inTrouble(this.lidar);
     this.diagnosis.offer(this.lidar, connected, trouble);
     this.tick();
   }
@@ -226,7 +224,7 @@ class Page {
   // What changes with time alone, or so often that the eye wants it slower.
   private tick(): void {
     const live = this.live();
-    const rate = live ? this.meter.rate(seconds()) : undefined;
+    const rate = live ? this.meter.rate : undefined;
     this.banner.show(this.connection.state, performance.now());
     const connected = this.connection.state.kind === "open";
     this.panel.showSince(connected ? this.lidar : undefined, Date.now() / 1000);

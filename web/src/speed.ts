@@ -53,7 +53,7 @@ function aimWords(
   if (!scanning) return { aim: `Wanted: ${wanted}`, mark: "rest" };
   if (rotation.settled) return { aim: `Settled at ${wanted}`, mark: "ok" };
   return {
-    aim: measured > 0 ? `Changing to ${wanted}` : `Measuring, ${wanted} wanted`,
+    aim: measured > 0 ? `Settling at ${wanted}` : `Measuring, ${wanted} wanted`,
     mark: "busy",
   };
 }

@@ -15,6 +15,8 @@ export interface Sweep {
   qualityMeasured: boolean;
   /// Angle of the last sample in turns, [0, 1): where the lidar was looking when the sweep ended.
   endTurn: number;
+  /// When the first sample was taken, in seconds on a clock that never steps.
+  startS: number;
   /// Duration of the revolution in seconds; 0 if not known.
   periodS: number;
   mode: string;
@@ -41,6 +43,7 @@ export function sweepOf(scan: Scan): Sweep {
     samples,
     qualityMeasured: columns.qualityMeasured,
     endTurn: samples > 0 ? columns.angle[samples - 1]! / columns.angleUnitsPerTurn : 0,
+    startS: Number(scan.firstMonotonicUs) / 1e6,
     periodS: scan.periodUs / 1e6,
     mode: scan.mode,
   };
