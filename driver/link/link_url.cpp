@@ -63,6 +63,14 @@ std::optional<std::uint32_t> parse_baud(const std::string& text) {
     return baud;
 }
 
+/// Not by Boost.URL 1.81, whose port_number() takes "99999" for 34463.
+std::optional<std::uint16_t> parse_port(std::string_view text) {
+    std::uint16_t port{};
+    const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), port);
+    return ec == std::errc() && end == text.data() + text.size() && port != 0 ? std::optional(port)
+                                                                              : std::nullopt;
+}
+
 /// Takes "baud" out of the parameters; the rest is not the port's.
 Result<LinkUrl, Problem> serial_url(
     std::string_view text,
@@ -130,12 +138,10 @@ Result<LinkUrl, Problem> network_url(
     if ((!path.empty() && path != "/") || url.has_userinfo() || url.has_fragment()) {
         return bad_url(text, "has more than a host and a port");
     }
-    std::uint16_t port = default_port;
-    if (url.has_port() && !url.port().empty()) {
-        port = url.port_number();  // 0 also for what does not fit
-        if (port == 0) {
-            return bad_url(text, "the port is not from 1 to 65535");
-        }
+    const bool names_port = url.has_port() && !url.port().empty();
+    const auto port = names_port ? parse_port(url.port()) : std::optional(default_port);
+    if (!port) {
+        return bad_url(text, "the port is not from 1 to 65535");
     }
     auto parameters = copy_of(url.params());
     const auto baud = std::find_if(parameters.begin(), parameters.end(), [](const auto& parameter) {
@@ -149,7 +155,7 @@ Result<LinkUrl, Problem> network_url(
         );
     }
     others = std::move(parameters);
-    return LinkUrl{std::string(text), Place{url.host_address(), port}};
+    return LinkUrl{std::string(text), Place{url.host_address(), *port}};
 }
 
 }  // namespace

@@ -101,6 +101,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"tcp://robot:x", "not a number"},
         Bad{"tcp://robot:0", "from 1 to 65535"},
         Bad{"tcp://robot:70000", "from 1 to 65535"},
+        Bad{"tcp://robot:99999", "from 1 to 65535"},
+        Bad{"tcp://robot:18446744073709571724", "from 1 to 65535"},
         Bad{"tcp://robot:20108/path", "more than a host"},
         Bad{"tcp://me@robot", "more than a host"},
         Bad{"tcp://robot#1", "more than a host"},
