@@ -65,7 +65,8 @@ Result<LidarUrl, Problem> parse_place(std::string_view text, Parameters& others)
 }
 
 bool is_name(std::string_view name) {
-    return !name.empty() && name.size() <= longest_name &&
+    // "." and ".." are not what they seem in the path of a URL.
+    return name.find_first_not_of('.') != std::string_view::npos && name.size() <= longest_name &&
            std::all_of(name.begin(), name.end(), [](char c) {
                return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
                       c == '.' || c == '_' || c == '-';
@@ -87,7 +88,7 @@ Result<void, Problem> apply(LidarUrl& url, const link::UrlParameter& parameter) 
             return bad_url(
                 url.text,
                 fmt::format("\"{}\" cannot be a lidar's name", link::printable(parameter.value)),
-                fmt::format("a name has 1 to {} of A-Z a-z 0-9 . _ -", longest_name)
+                fmt::format("a name has 1 to {} of A-Z a-z 0-9 . _ -, not only dots", longest_name)
             );
         }
         url.name = parameter.value;

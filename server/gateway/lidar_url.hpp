@@ -36,8 +36,8 @@ struct LidarUrl {
 };
 
 /// Reads a link's URL (see link::parse_link_url) or "virtual:a1m8", "virtual:a1m8?world=FILE"; all
-/// with the parameters that any lidar may have: "name=left" (1 to 64 of A-Z a-z 0-9 . _ -),
-/// "mode=Boost" (name or id), "hz=7.5" (slowest_hz to fastest_hz).
+/// with the parameters that any lidar may have: "name=left" (1 to 64 of A-Z a-z 0-9 . _ -,
+/// not only dots), "mode=Boost" (name or id), "hz=7.5" (slowest_hz to fastest_hz).
 /// The Problem names what is wrong and shows what can be written.
 [[nodiscard]] Result<LidarUrl, Problem> parse_lidar_url(std::string_view text);
 

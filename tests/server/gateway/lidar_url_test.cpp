@@ -123,6 +123,8 @@ INSTANTIATE_TEST_SUITE_P(
         "name=two%20words",
         "name=a/b",
         "name=%00",
+        "name=.",
+        "name=..",
         too_long.c_str(),
         "mode=",
         "hz=",
