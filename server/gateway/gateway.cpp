@@ -72,8 +72,12 @@ command(ManagedLidar& lidar, asio::awaitable<Result<void, Problem>> order) {
     co_return co_await async::run_on(lidar.worker().executor(), obey(lidar, std::move(order)));
 }
 
-/// Changes what is given. A speed that is refused changes nothing.
+/// Changes what is given, or nothing if the lidar refuses a part of it.
 asio::awaitable<Result<void, Problem>> apply(device::Device& device, api::LidarUpdate update) {
+    const auto& modes = device.state().modes;
+    if (update.mode && !modes.empty() && device::find_mode(modes, *update.mode) == nullptr) {
+        co_return device::unknown_mode(*update.mode, modes);
+    }
     if (update.speed_hz) {
         if (auto set = device.set_speed(*update.speed_hz); !set) {
             co_return set.error();

@@ -124,5 +124,19 @@ TEST(Control, ALidarThatVanishesIsReportedAndTakenAgain) {
     EXPECT_GT(client.next_sweep().sequence, before);
 }
 
+TEST(Control, APatchThatIsRefusedInOnePartChangesNothing) {
+    GatewayProcess gateway({"--lidar", "virtual:s2?name=left"});
+    Subscriber client("tcp://" + gateway.tcp);
+    client.subscribe();
+    client.wait_for_state(v1::Lidar::SCANNING);
+    const std::string lidar = "/api/v1/lidars/left";
+    const auto before = http(gateway.http, "PATCH", lidar, R"({"speedHz": 12})");
+    EXPECT_THAT(before.body, HasSubstr("\"wantedHz\": 12,"));
+    const auto refused = http(gateway.http, "PATCH", lidar, R"({"speedHz": 8, "mode": "Turbo"})");
+    EXPECT_EQ(refused.status, 400);
+    EXPECT_THAT(refused.body, HasSubstr("unknown_mode"));
+    EXPECT_THAT(http(gateway.http, "GET", lidar).body, HasSubstr("\"wantedHz\": 12,"));
+}
+
 }  // namespace
 }  // namespace sweepcast::test
