@@ -182,6 +182,14 @@ Result<void, Problem> Gateway::add_lidars(const MakeLogger& make_logger) {
     if (auto problem = name_clash(options_.lidars)) {
         return std::move(*problem);
     }
+    // First of all the names that users gave: a port that is called the same must not take one.
+    std::uint32_t number_named = 0;
+    for (const auto& url : options_.lidars) {
+        ++number_named;
+        if (!url.name.empty()) {
+            ids_.claim(number_named, url.name, url.name);
+        }
+    }
     for (const auto& url : options_.lidars) {
         const auto number = static_cast<std::uint32_t>(lidars_.size() + 1);
         auto where = place(url, number, make_logger);

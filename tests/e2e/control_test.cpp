@@ -138,5 +138,16 @@ TEST(Control, APatchThatIsRefusedInOnePartChangesNothing) {
     EXPECT_THAT(http(gateway.http, "GET", lidar).body, HasSubstr("\"wantedHz\": 12,"));
 }
 
+TEST(Control, ANameThatItsUserGaveALidarIsNotTakenByThePortOfAnother) {
+    ScratchDirectory scratch;
+    GatewayProcess gateway({"--lidar", scratch.file("left"), "--lidar", "virtual:a1m8?name=left"});
+    const auto named = http(gateway.http, "GET", "/api/v1/lidars/left");
+    EXPECT_THAT(named.body, HasSubstr("virtual:a1m8?name=left"));
+    EXPECT_THAT(
+        http(gateway.http, "GET", "/api/v1/lidars/left-1").body,
+        HasSubstr(scratch.file("left"))
+    );
+}
+
 }  // namespace
 }  // namespace sweepcast::test
