@@ -164,6 +164,8 @@ bool Playback::read_block() {
 // Reads until there is something to play. A second start without any bytes ends a loop that would
 // bring none for ever.
 void Playback::refill() {
+    // A capture may take no time at all; playing it again must take some.
+    constexpr std::chrono::nanoseconds shortest_loop = std::chrono::milliseconds(1);
     bool started_again = false;
     while (played_ == block_.size()) {
         if (read_block()) {
@@ -171,7 +173,7 @@ void Playback::refill() {
         }
         block_.clear();
         played_ = 0;
-        const auto length = last_at_ - descriptor_at_;
+        const auto length = std::max(last_at_ - descriptor_at_, shortest_loop);
         if (!loop_ || started_again || !rewind()) {
             return;
         }

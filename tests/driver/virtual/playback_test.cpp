@@ -213,5 +213,27 @@ TEST(Playback, TakesACaptureThatSaysLittle) {
     EXPECT_GT((*opened)->persona().baud, 0U);
 }
 
+// Nothing holds it up: no time passes in the capture, and a mute scanner's line is never full.
+TEST(Playback, ALoopWithoutTimeComesToTheNextMoment) {
+    auto file = std::make_unique<std::stringstream>();
+    capture::CaptureWriter writer(*file, header);
+    ASSERT_TRUE(writer.append(Direction::from_device, 0ns, descriptor));
+    ASSERT_TRUE(writer.append(Direction::from_device, 0ns, Bytes(84, 1)));
+    const auto playback = Playback::open(std::move(file), "test", true);
+    ASSERT_TRUE(playback) << playback.error().cause;
+    const Moment now{1h};
+    Emulator emulator(
+        (*playback)->persona(),
+        (*playback)->serial(),
+        Beam(test_world(), (*playback)->persona().beam, {}),
+        now,
+        [](const Event&) {},
+        EmulatorSettings{.faults = {.mute = true}, .playback = playback->get()}
+    );
+    emulator.receive(protocol::encode({Command::scan, {}}), now);
+    emulator.advance(now + 1s);
+    EXPECT_GT(emulator.next_due(), now + 1s);
+}
+
 }  // namespace
 }  // namespace sweepcast::virtual_lidar
