@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <glob.h>
+#include <map>
 #include <set>
 #include <sys/stat.h>
 #include <system_error>
@@ -35,22 +36,43 @@ std::string node_of(const std::string& path) {
     return not_there ? path : node.string();
 }
 
-FoundPort describe(const std::string& path, const fs::path& proc) {
-    FoundPort port{path, node_of(path), false, ""};
-    std::error_code not_there;
-    port.is_device = fs::is_character_file(port.node, not_there);
-    if (port.is_device) {
-        const auto holders = find_port_holders(port.node, proc);
-        if (!holders.empty()) {
-            port.holder =
-                fmt::format("{} (process {})", holders.front().command, holders.front().pid);
-        }
-    }
-    return port;
-}
+/// Describes ports; each device file once, for finding out who holds it walks all of `proc`.
+class Describer {
+public:
+    explicit Describer(const fs::path& proc) : proc_(proc) {}
 
-FoundPort describe(const SerialPort& usb, const fs::path& proc) {
-    auto port = describe(usb.path, proc);
+    FoundPort operator()(const std::string& path) {
+        const auto node = node_of(path);
+        auto known = known_.find(node);
+        if (known == known_.end()) {
+            known = known_.emplace(node, ask(node)).first;
+        }
+        auto port = known->second;
+        port.path = path;
+        return port;
+    }
+
+private:
+    [[nodiscard]] FoundPort ask(const std::string& node) const {
+        FoundPort port{node, node, false, ""};
+        std::error_code not_there;
+        port.is_device = fs::is_character_file(node, not_there);
+        if (port.is_device) {
+            const auto holders = find_port_holders(node, proc_);
+            if (!holders.empty()) {
+                port.holder =
+                    fmt::format("{} (process {})", holders.front().command, holders.front().pid);
+            }
+        }
+        return port;
+    }
+
+    const fs::path& proc_;
+    std::map<std::string, FoundPort> known_;  ///< by device file
+};
+
+FoundPort describe_usb(const SerialPort& usb, Describer& describe) {
+    auto port = describe(usb.path);
     port.adapter = fmt::format(
         "{}{}({:04x}:{:04x})",
         usb.product,
@@ -137,13 +159,14 @@ PortsThere look_around(
     const fs::path& proc
 ) {
     PortsThere there;
+    Describer describe(proc);
     for (const auto& usb : list_usb_ports(roots)) {
-        there.usb.push_back(describe(usb, proc));
+        there.usb.push_back(describe_usb(usb, describe));
     }
     for (const auto& pattern : patterns) {
         PatternMatches matches{pattern, {}};
         for (const auto& path : expand(pattern)) {
-            matches.ports.push_back(describe(path, proc));
+            matches.ports.push_back(describe(path));
         }
         there.patterns.push_back(std::move(matches));
     }

@@ -164,6 +164,20 @@ TEST_F(LookAroundTest, TellsWhoHasAPortOpen) {
     EXPECT_EQ(there.patterns.at(0).ports.at(0).holder, "minicom (process 812)");
 }
 
+TEST_F(LookAroundTest, TellsWhoHasAPortOpenUnderEachOfItsNames) {
+    const PtyPair pty;
+    scratch_.link("lidar", pty.path());
+    scratch_.link("proc/812/fd/3", pty.path());
+    scratch_.file("proc/812/comm", "minicom\n");
+    const auto link = (scratch_.root() / "lidar").string();
+    const auto there = look({link, pty.path()}, {});
+    EXPECT_EQ(
+        there.patterns.at(0).ports.at(0),
+        (FoundPort{link, pty.path(), true, "minicom (process 812)"})
+    );
+    EXPECT_EQ(there.patterns.at(1).ports.at(0).holder, "minicom (process 812)");
+}
+
 TEST(PlaceKey, IsTheSameForAllNamesOfAPlace) {
     const ScratchDirectory scratch;
     const auto file = scratch.file("port", "").string();
