@@ -25,7 +25,8 @@ std::string_view next_step_after(error_code code) {
         return "look at the lidar's state";
     }
     if (code == link::errc::disconnected) {
-        return "check the USB cable and plug the lidar in again";
+        return "check the USB cable and plug the lidar in again; on a network: its power, address "
+               "and port";
     }
     return "";
 }
