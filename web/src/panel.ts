@@ -69,7 +69,7 @@ export class Panel {
 
   /// Shows the stream's figures; those of a sweep are dashes while none comes.
   showMeasured({ sweep, sweepsPerS, missed }: Measured): void {
-    const perS = sweep && sweep.periodS > 0 ? sweep.samples / sweep.periodS : undefined;
+    const perS = sweep && sweepsPerS !== undefined ? sweep.samples * sweepsPerS : undefined;
     // To three digits: the fourth would never stand still.
     setText(this.values.samples, perS === undefined ? NONE : whole(Number(perS.toPrecision(3))));
     const points = sweep && `${whole(sweep.x.length)} / ${whole(sweep.samples)}`;
