@@ -665,6 +665,24 @@ if (binary) {
     await page.click("#diagnosis-close");
     await accept("**/diagnosis", 503);
   });
+
+  test("what the gateway itself finds wrong with a missing port is shown", async () => {
+    const answer = page.waitForResponse("**/diagnosis");
+    await page.click("#diagnose-now");
+    const status = (await answer).status();
+    await page.waitForSelector("#diagnosis-progress", { state: "hidden" });
+    if (status === 404) {
+      // A gateway that cannot diagnose.
+      assert.match(await text("#diagnosis-outcome"), /This gateway cannot do that/);
+      await accept("**/diagnosis", 404);
+    } else {
+      assert.equal(status, 200);
+      assert.match(await text("#diagnosis-outcome"), new RegExp(MISSING));
+      assert.match(await text("#diagnosis-checks li"), /The port exists.*Wrong/);
+      assert.ok((await page.locator("#diagnosis-findings li").count()) > 1);
+    }
+    await page.keyboard.press("Escape");
+  });
 }
 
 test("the browser had nothing to complain of", () => {
