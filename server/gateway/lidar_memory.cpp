@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdlib>
 #include <fstream>
 #include <string_view>
@@ -156,14 +157,18 @@ Result<void, Problem> LidarMemory::write() const {
     if (file_.has_parent_path()) {
         fs::create_directories(file_.parent_path(), failure);
     }
+    if (failure) {
+        return unwritable(file_, failure.message());
+    }
     auto fresh = file_;
     fresh += ".new";
     {
+        errno = 0;
         std::ofstream out(fresh, std::ios::binary | std::ios::trunc);
         out << json::serialize(root) << '\n';
         out.close();
         if (!out) {
-            return unwritable(file_, "it cannot be written");
+            return unwritable(file_, std::generic_category().message(errno));
         }
     }
     fs::rename(fresh, file_, failure);

@@ -112,5 +112,20 @@ TEST_F(LidarMemoryTest, AFolderInItsPlaceIsTold) {
     EXPECT_THAT(noted.error().hint, HasSubstr("--state-dir"));
 }
 
+TEST_F(LidarMemoryTest, SaysWhyTheFileCannotBeWritten) {
+    std::ofstream(folder / "below") << "a file where the folder should be";
+    LidarMemory no_folder;
+    ASSERT_TRUE(no_folder.open(file));
+    const auto in_no_folder = no_folder.note("AAAA", "/dev/ttyUSB0", 460800);
+    ASSERT_FALSE(in_no_folder);
+    EXPECT_THAT(in_no_folder.error().cause, HasSubstr("Not a directory"));
+    fs::create_directories(folder / "lidars.json.new");
+    LidarMemory no_file;
+    ASSERT_TRUE(no_file.open(folder / "lidars.json"));
+    const auto in_no_file = no_file.note("AAAA", "/dev/ttyUSB0", 460800);
+    ASSERT_FALSE(in_no_file);
+    EXPECT_THAT(in_no_file.error().cause, HasSubstr("Is a directory"));
+}
+
 }  // namespace
 }  // namespace sweepcast::gateway
