@@ -479,7 +479,7 @@ TEST(CaptureTest, TheMotorTurnsAsFastAsAsked) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.log;
     const Bytes rpm_420{0xA5, 0xA8, 0x02, 0xA4, 0x01};
     const auto sent = load(file).to_device;
-    EXPECT_NE(std::ranges::search(sent, rpm_420).begin(), sent.end());
+    EXPECT_NE(std::search(sent.begin(), sent.end(), rpm_420.begin(), rpm_420.end()), sent.end());
 }
 
 TEST(CaptureTest, DecodeTellsHowACaptureEnds) {
