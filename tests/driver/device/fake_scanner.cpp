@@ -91,18 +91,31 @@ void FakeScanner::answer_conf(const protocol::Request& request) {
 
 void FakeScanner::send_turn() {
     for (unsigned degree = 0; degree < 360; ++degree) {
-        protocol::NormalMeasurement measurement;
-        measurement.starts_revolution = degree == 0;
-        measurement.angle = protocol::AngleQ6{static_cast<std::uint16_t>(degree * 64)};
-        measurement.distance_q2 = static_cast<std::uint16_t>(4000 + degree);
-        line_.send(protocol::encode_normal(measurement));
+        send_sample(degree);
     }
+}
+
+void FakeScanner::send_sample(unsigned degree) {
+    protocol::NormalMeasurement measurement;
+    measurement.starts_revolution = degree == 0;
+    measurement.angle = protocol::AngleQ6{static_cast<std::uint16_t>(degree * 64)};
+    measurement.distance_q2 = static_cast<std::uint16_t>(4000 + degree);
+    line_.send(protocol::encode_normal(measurement));
 }
 
 std::size_t FakeScanner::count(protocol::Command command) const {
     return static_cast<std::size_t>(
         std::ranges::count(requests, command, &protocol::Request::command)
     );
+}
+
+std::span<const protocol::Request> FakeScanner::since_scan() const {
+    const auto is_scan = [](const protocol::Request& request) {
+        return request.command == protocol::Command::scan ||
+               request.command == protocol::Command::express_scan;
+    };
+    const auto latest = std::find_if(requests.rbegin(), requests.rend(), is_scan).base();
+    return {latest, requests.end()};
 }
 
 void FakeScanner::obey(const protocol::Request& request) {

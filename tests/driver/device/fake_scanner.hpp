@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -24,9 +25,13 @@ public:
 
     /// Sends a full turn of samples in answer type 0x81, one a degree, the first one marked.
     void send_turn();
+    void send_sample(unsigned degree);
 
     /// How often a command has come.
     [[nodiscard]] std::size_t count(protocol::Command command) const;
+
+    /// The requests that have come since the latest one to scan.
+    [[nodiscard]] std::span<const protocol::Request> since_scan() const;
 
     protocol::DeviceInfo info{
         .model = 0x18,

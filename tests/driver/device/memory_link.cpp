@@ -2,6 +2,9 @@
 
 #include "driver/link/error.hpp"
 
+#include <boost/asio/post.hpp>
+#include <boost/asio/use_awaitable.hpp>
+
 #include <algorithm>
 #include <utility>
 
@@ -23,6 +26,11 @@ MemoryLink::read_some(std::span<std::uint8_t> into, link::Deadline deadline) {
         }
         if (std::exchange(line_.interrupted, false)) {
             co_return make_error_code(link::errc::interrupted);
+        }
+        if (line_.babbles) {
+            co_await asio::post(asio::use_awaitable);
+            line_.to_host.push_back(0);
+            break;
         }
         const bool changed = co_await line_.changed.wait_until(deadline);
         if (!changed) {
@@ -61,6 +69,9 @@ Result<void> MemoryLink::set_dtr(bool asserted) {
 Result<void> MemoryLink::set_baud(std::uint32_t baud) {
     if (is_network()) {
         return make_error_code(link::errc::no_line_speed);
+    }
+    if (std::ranges::find(line_.refused_bauds, baud) != line_.refused_bauds.end()) {
+        return make_error_code(link::errc::baud_not_supported);
     }
     line_.baud = baud;
     flush_input();

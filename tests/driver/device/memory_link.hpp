@@ -27,6 +27,11 @@ struct Line {
     /// The speed the driver talks at; 0 makes it a network link.
     std::uint32_t baud{115200};
 
+    /// Zeros come without end, faster than they are read.
+    bool babbles{};
+    /// Speeds that the adapter cannot run at.
+    std::vector<std::uint32_t> refused_bauds;
+
     /// Sends bytes to the driver.
     void send(std::span<const std::uint8_t> bytes) {
         to_host.insert(to_host.end(), bytes.begin(), bytes.end());
