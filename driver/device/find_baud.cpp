@@ -105,8 +105,13 @@ asio::awaitable<Result<Found>> find_baud(Conversation& talk, std::span<const std
         }
         co_return Found{0, *info};
     }
+    auto failure = make_error_code(link::errc::baud_not_supported);
     for (const auto baud : bauds) {
-        if (auto set = talk.link().set_baud(baud); !set) {
+        auto set = talk.link().set_baud(baud);
+        if (!set && set.error() == link::errc::baud_not_supported) {
+            continue;  // not every adapter can run at every speed
+        }
+        if (!set) {
             co_return set.error();
         }
         const auto info = co_await ask_at_present_speed(talk);
@@ -116,8 +121,9 @@ asio::awaitable<Result<Found>> find_baud(Conversation& talk, std::span<const std
         if (!is_silence(info.error())) {
             co_return info.error();
         }
+        failure = make_error_code(errc::no_answer);
     }
-    co_return make_error_code(errc::no_answer);
+    co_return failure;
 }
 
 asio::awaitable<Result<void>> negotiate_baud(Conversation& talk, std::uint32_t baud) {

@@ -27,8 +27,9 @@ struct Found {
 };
 
 /// Ends a scan that may be running and asks who is there at each speed in turn; the line stays at
-/// the one at which a lidar answered. On a network there is one try, without a speed. Takes at most
-/// 0.7 s a speed. Errors: errc::no_answer; those of the link.
+/// the one at which a lidar answered. Speeds that the adapter cannot run at are passed over. On a
+/// network there is one try, without a speed. Takes at most 0.7 s a speed. Errors: errc::no_answer;
+/// those of the link, baud_not_supported only if the adapter can run at none of the speeds.
 boost::asio::awaitable<Result<Found>>
 find_baud(Conversation& talk, std::span<const std::uint32_t> bauds);
 

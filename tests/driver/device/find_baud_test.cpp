@@ -65,6 +65,20 @@ TEST_F(FindBaudTest, APulledCableIsNoWrongSpeed) {
     EXPECT_EQ(run(find_baud(talk, usual_bauds)).error(), link::errc::disconnected);
 }
 
+TEST_F(FindBaudTest, ASpeedThatTheAdapterCannotRunAtIsPassedOver) {
+    scanner.baud = 1000000;
+    line.refused_bauds = {256000, 460800};
+    const auto found = run(find_baud(talk, usual_bauds));
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->baud, 1000000U);
+}
+
+TEST_F(FindBaudTest, SaysSoIfTheAdapterCanRunAtNoneOfTheSpeeds) {
+    line.refused_bauds.assign(usual_bauds.begin(), usual_bauds.end());
+    const auto found = run(find_baud(talk, usual_bauds));
+    EXPECT_EQ(found.error(), link::errc::baud_not_supported);
+}
+
 TEST_F(FindBaudTest, NegotiatesAnotherSpeedAndConfirmsIt) {
     scanner.negotiates = true;
     EXPECT_TRUE(run(negotiate_baud(talk, 256000)));
