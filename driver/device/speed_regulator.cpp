@@ -26,6 +26,7 @@ void SpeedRegulator::want(double hz) {
     since_wish_ = 0;
     since_setting_ = 0;
     settled_ = false;
+    failed_at_hz_ = 0;
     switch (speed_control(traits_.control)) {
     case SpeedControl::fixed:
         wanted_hz_ = wish_hz_;
@@ -53,6 +54,7 @@ void SpeedRegulator::observe(std::chrono::microseconds revolution) {
     if (speed_control(traits_.control) == SpeedControl::duty && steady()) {
         correct();
     }
+    note_failure();
 }
 
 void SpeedRegulator::stopped() {
@@ -60,6 +62,7 @@ void SpeedRegulator::stopped() {
     since_wish_ = 0;
     since_setting_ = 0;
     settled_ = false;
+    failed_at_hz_ = 0;
 }
 
 /// Whether the motor turns as it was told and no longer changes its speed.
@@ -73,6 +76,17 @@ void SpeedRegulator::correct() {
     if (std::abs(ratio - 1.0) > close_enough && better != setting_) {
         setting_ = better;
         since_setting_ = 0;
+        failed_at_hz_ = 0;
+    }
+}
+
+/// Notes that the speed will not become the wanted one. What is noted stays until the speed really
+/// is another one, so that jitter does not make news of it.
+void SpeedRegulator::note_failure() {
+    if (speed_is_met(speed_.hz(), wanted_hz_)) {
+        failed_at_hz_ = 0;
+    } else if (since_wish_ >= patience && steady() && !speed_is_met(speed_.hz(), failed_at_hz_)) {
+        failed_at_hz_ = speed_.hz();
     }
 }
 
@@ -85,8 +99,7 @@ std::string SpeedRegulator::warning() const {
     }
     const bool beyond = (traits_.min_rpm > 0 && wanted_hz_ * 60.0 < traits_.min_rpm) ||
                         (traits_.max_rpm > 0 && wanted_hz_ * 60.0 > traits_.max_rpm);
-    const bool failed =
-        since_wish_ >= patience && steady() && !speed_is_met(speed_.hz(), wanted_hz_);
+    const bool failed = failed_at_hz_ > 0;
     if (failed && control == SpeedControl::duty && setting_ == full_duty) {
         return fmt::format(
             "the motor does not reach {:.1f} Hz even at full duty: check its 5 V supply, or want "
@@ -100,7 +113,7 @@ std::string SpeedRegulator::warning() const {
             "see "
             "that nothing brakes it",
             wanted_hz_,
-            speed_.hz()
+            failed_at_hz_
         );
     }
     if (beyond) {

@@ -44,6 +44,7 @@ private:
     [[nodiscard]] std::string warning() const;
     [[nodiscard]] bool steady() const;
     void correct();
+    void note_failure();
 
     MotorTraits traits_;
     Speedometer speed_;
@@ -53,6 +54,8 @@ private:
     std::uint32_t since_wish_{};     ///< revolutions, counted up to a bound
     std::uint32_t since_setting_{};  ///< likewise since the motor was told
     bool settled_{};
+    /// The speed that it keeps to instead of the wanted one; 0: it does not.
+    double failed_at_hz_{};
 };
 
 }  // namespace sweepcast::device

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <string>
 
 namespace sweepcast::device {
 namespace {
@@ -234,6 +235,41 @@ TEST(SpeedRegulatorTest, SaysThatALidarDoesNotTurnAsTold) {
         regulator.observe(turn_at(5.0));
     }
     EXPECT_THAT(regulator.rotation().warning, HasSubstr("7.0 Hz but turns at 5.0"));
+}
+
+TEST(SpeedRegulatorTest, RepeatsNoWarningBecauseOfJitter) {
+    auto traits = board();
+    traits.control = protocol::MotorControl::rpm;
+    SpeedRegulator regulator(traits);
+    regulator.want(7.0);
+    int told = 0;
+    std::string before;
+    for (int turn = 0; turn < 400; ++turn) {
+        regulator.observe(turn_at(turn % 7 == 0 ? 5.1 : 5.045));
+        const auto warning = regulator.rotation().warning;
+        told += warning != before ? 1 : 0;
+        before = warning;
+    }
+    EXPECT_EQ(told, 1);
+    EXPECT_NE(before, "");
+}
+
+TEST(SpeedRegulatorTest, WarnsAnewWhenTheSpeedIsAnotherWrongOne) {
+    auto traits = board();
+    traits.control = protocol::MotorControl::rpm;
+    SpeedRegulator regulator(traits);
+    regulator.want(7.0);
+    for (int turn = 0; turn < 100; ++turn) {
+        regulator.observe(turn_at(5.0));
+    }
+    for (int turn = 0; turn < 20; ++turn) {
+        regulator.observe(turn_at(6.0));
+    }
+    EXPECT_THAT(regulator.rotation().warning, HasSubstr("turns at 6.0"));
+    for (int turn = 0; turn < 20; ++turn) {
+        regulator.observe(turn_at(7.0));
+    }
+    EXPECT_EQ(regulator.rotation().warning, "");
 }
 
 class FixedSpeed : public testing::TestWithParam<protocol::MotorControl> {};
