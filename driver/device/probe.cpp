@@ -4,6 +4,7 @@
 #include "driver/device/conversation.hpp"
 #include "driver/device/error.hpp"
 #include "driver/device/find_baud.hpp"
+#include "driver/device/motor.hpp"
 #include "driver/link/open_link.hpp"
 #include "driver/protocol/model.hpp"
 
@@ -64,6 +65,7 @@ probe_open(Conversation& talk, link::LinkUrl url, std::vector<std::uint32_t> bau
     if (!identity) {
         co_return no_lidar(identity.error(), url, {found->baud});
     }
+    (void)co_await stop_motor(talk, identity->motor.control);  // as nobody scans any more
     co_return Probed{std::move(*identity), found->baud};
 }
 

@@ -26,7 +26,8 @@ struct Probed {
 
 /// Opens the link, finds the line speed (trying the one in the URL alone if it has one, else
 /// `baud_hints` and then the usual ones), identifies what is there and closes it again. A scan that
-/// was running is ended. The Problem says why there is no answer and what to do.
+/// was running is ended and the motor stopped. The Problem says why there is no answer and what to
+/// do.
 boost::asio::awaitable<Result<Probed, Problem>> probe(
     boost::asio::any_io_executor executor,
     link::LinkUrl url,
