@@ -10,8 +10,6 @@ namespace sweepcast::async {
 
 namespace asio = boost::asio;
 
-namespace {
-
 bool is_cancellation(const std::exception_ptr& failure) {
     try {
         std::rethrow_exception(failure);
@@ -21,8 +19,6 @@ bool is_cancellation(const std::exception_ptr& failure) {
         return false;
     }
 }
-
-}  // namespace
 
 TaskGroup::TaskGroup(asio::any_io_executor executor, OnFailure on_failure)
     : executor_(executor)

@@ -14,6 +14,9 @@
 
 namespace sweepcast::async {
 
+/// Whether it says that a coroutine was cancelled: what its owner did, not a failure.
+[[nodiscard]] bool is_cancellation(const std::exception_ptr& failure);
+
 /// Owns coroutines that run on one executor, all touched from that executor's thread only.
 class TaskGroup {
 public:

@@ -1,5 +1,6 @@
 #include "driver/device/device.hpp"
 
+#include "driver/async/task_group.hpp"
 #include "driver/device/advice.hpp"
 #include "driver/device/error.hpp"
 #include "driver/device/find_baud.hpp"
@@ -10,6 +11,7 @@
 #include <boost/asio/experimental/awaitable_operators.hpp>
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 namespace sweepcast::device {
@@ -33,6 +35,20 @@ public:
 private:
     link::Link*& slot_;
 };
+
+/// What `part` gives, with what must not happen (a broken invariant, no memory) made a failure like
+/// others. A cancellation passes: the owner ends this life.
+template <class T>
+asio::awaitable<T> guarded(asio::awaitable<T> part) {
+    try {
+        co_return co_await std::move(part);
+    } catch (const std::exception& failure) {
+        if (async::is_cancellation(std::current_exception())) {
+            throw;
+        }
+        co_return T(Problem{make_error_code(errc::internal), failure.what(), "please report this"});
+    }
+}
 
 }  // namespace
 
@@ -61,7 +77,8 @@ asio::awaitable<void> Device::run() {
             co_await examine();
             continue;
         }
-        const auto problem = co_await live_guarded();
+        auto life = live();
+        const auto problem = co_await guarded(std::move(life));
         wanted_.reset = false;  // the next attempt begins from scratch anyway
         if (wanted_.shutdown || examination_) {
             continue;
@@ -83,30 +100,26 @@ void Device::shut_down() {
 asio::awaitable<void> Device::examine() {
     using namespace asio::experimental::awaitable_operators;
     set_phase(Phase::identifying, {{}, "being examined", ""});
-    try {
-        auto first = co_await (examination_->examine() || until_shutdown());
-        if (auto* diagnosis = std::get_if<0>(&first)) {
-            examination_->result = std::move(*diagnosis);
-        }
-    } catch (const boost::system::system_error&) {
-        examination_.reset();
-        throw;  // cancelled: the owner ends this life
-    } catch (const std::exception& failure) {
-        log_->error("the examination failed: {}", failure.what());
+    auto first = co_await (examination_result() || until_shutdown());
+    if (auto* diagnosis = std::get_if<0>(&first)) {
+        examination_->result = std::move(*diagnosis);
     }
     examination_.reset();
     changed_.notify();
 }
 
-/// live(), with what must not happen (a broken invariant, no memory) made a failure like others.
-asio::awaitable<Problem> Device::live_guarded() {
+/// What the examination finds; nothing if it fails. (Of two that race, `||` would wait for the
+/// other if this one threw.)
+asio::awaitable<std::optional<Diagnosis>> Device::examination_result() {
     try {
-        co_return co_await live();
-    } catch (const boost::system::system_error&) {
-        throw;  // cancelled: the owner ends this life
+        co_return co_await examination_->examine();
     } catch (const std::exception& failure) {
-        co_return Problem{make_error_code(errc::internal), failure.what(), "please report this"};
+        if (async::is_cancellation(std::current_exception())) {
+            throw;
+        }
+        log_->error("the examination failed: {}", failure.what());
     }
+    co_return std::nullopt;
 }
 
 /// One connection, from opening the port to losing it. Returns what ended it.
@@ -119,7 +132,11 @@ asio::awaitable<Problem> Device::live() {
     const auto link = std::move(*opened);
     const Lend lend(link_, *link);
     Conversation talk(*link);
-    auto problem = co_await hold(talk);
+    auto holding = hold(talk);
+    auto problem = co_await guarded(std::move(holding));
+    if (problem.code == errc::internal) {
+        (void)co_await talk.silence();  // nobody did: a scan may be going on
+    }
     // However it ended: nobody wants the motor to turn now. The line may be gone, too.
     (void)co_await stop_motor(talk, motor_.control);
     co_return problem;
@@ -128,7 +145,8 @@ asio::awaitable<Problem> Device::live() {
 /// Opens the link; given up at shutdown, as a connection over a network takes its time.
 asio::awaitable<Result<std::unique_ptr<link::Link>, Problem>> Device::open() {
     using namespace asio::experimental::awaitable_operators;
-    auto first = co_await (open_link_(bauds().front()) || until_shutdown());
+    auto opening = open_link_(bauds().front());
+    auto first = co_await (guarded(std::move(opening)) || until_shutdown());
     if (auto* opened = std::get_if<0>(&first)) {
         co_return std::move(*opened);
     }
@@ -231,16 +249,15 @@ asio::awaitable<Result<void>> Device::idle(Conversation& talk, Phase phase) {
     if (!off) {
         co_return off;
     }
-    const auto status = state_.health->status;
+    const auto known = state_.health;
     set_phase(phase, phase == Phase::protection_stop ? advice(errc::protection_stop) : Problem{});
-    while (state_.health->status == status) {
+    while (state_.health == known) {
         const auto ask_at = Clock::now() + options_.health_interval;
-        auto heard = co_await talk.read(ask_at);
-        while (heard) {  // leftovers of a scan or of a boot
-            heard = co_await talk.read(ask_at);
-        }
-        if (heard.error() != link::errc::timed_out) {
-            co_return heard.error();
+        while (Clock::now() < ask_at) {
+            const auto heard = co_await talk.read(ask_at);  // leftovers of a scan or of a boot
+            if (!heard && heard.error() != link::errc::timed_out) {
+                co_return heard.error();
+            }
         }
         const auto health = co_await ask_health(talk);
         if (!health) {
@@ -382,6 +399,9 @@ void Device::set_phase(Phase phase, const Problem& why) {
     state_.hint = why.hint;
     state_.since = std::chrono::system_clock::now();
     ++state_version_;
+    if (in_hand()) {
+        examination_.reset();  // who asked for it meanwhile is told that there is none
+    }
     tell_state();
 }
 

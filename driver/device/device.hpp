@@ -129,7 +129,7 @@ private:
     };
 
     boost::asio::awaitable<void> examine();
-    boost::asio::awaitable<Problem> live_guarded();
+    boost::asio::awaitable<std::optional<Diagnosis>> examination_result();
     boost::asio::awaitable<Problem> live();
     boost::asio::awaitable<Result<std::unique_ptr<link::Link>, Problem>> open();
     boost::asio::awaitable<Problem> hold(Conversation& talk);

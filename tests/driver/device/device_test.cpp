@@ -9,6 +9,7 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/system/system_error.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <spdlog/logger.h>
@@ -41,6 +42,7 @@ class DeviceTest : public testing::Test, public DeviceObserver {
 public:  // the tests' coroutines are lambdas, which inherit no access
     void on_state(const DeviceState& state) override {
         phases.push_back(state.phase);
+        told_code = state.health ? state.health->code : 0;
         changed.notify();
     }
     void on_sweep(CapturedSweep sweep) override {
@@ -58,6 +60,9 @@ public:  // the tests' coroutines are lambdas, which inherit no access
             ++opened;
             opened_at = baud;
             line.baud = line.baud != 0 ? baud : 0;
+            if (open_throws) {
+                std::rethrow_exception(open_throws);
+            }
             if (open_problem) {
                 co_return *open_problem;
             }
@@ -111,8 +116,10 @@ public:  // the tests' coroutines are lambdas, which inherit no access
     std::shared_ptr<spdlog::logger> log = std::make_shared<spdlog::logger>("test");
     std::unique_ptr<Device> device;
     std::vector<Phase> phases;
+    std::uint16_t told_code{};
     std::vector<CapturedSweep> sweeps;
     std::optional<Problem> open_problem;
+    std::exception_ptr open_throws;
     int opened{};
     std::uint32_t opened_at{};
     bool sweep_throws{};
@@ -352,6 +359,27 @@ TEST_F(DeviceTest, AnIdleLidarThatFallsSilentIsNoticed) {
     }(*this));
 }
 
+TEST_F(DeviceTest, AnIdleLidarThatBabblesIsAskedAllTheSame) {
+    make_device({.scan_at_once = false, .retry_delay = 1h});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::idle);
+        test.scanner.answers = false;
+        test.line.babbles = true;
+        test.line.changed.notify();
+        co_await test.until_phase(Phase::failed);
+    }(*this));
+}
+
+TEST_F(DeviceTest, TellsWhenTheCodeOfAProtectionStopChanges) {
+    scanner.health = {protocol::HealthStatus::error, 0x8001};
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::protection_stop);
+        test.scanner.health.code = 0x8002;
+        co_await test.until([&test] { return test.told_code == 0x8002; });
+    }(*this));
+}
+
 TEST_F(DeviceTest, AProtectionStopThatEndsByItselfIsNoticed) {
     scanner.health = {protocol::HealthStatus::error, 0x8001};
     make_device();
@@ -369,8 +397,26 @@ TEST_F(DeviceTest, AnExceptionOfTheObserverIsAFailureLikeOthers) {
     play([](DeviceTest& test) -> asio::awaitable<void> {
         co_await test.until_phase(Phase::failed);
         EXPECT_EQ(test.device->state().cause, "no room for a sweep");
+        EXPECT_EQ(test.line.dtr, true) << "the motor turns on";
+        EXPECT_THAT(
+            test.scanner.since_scan(),
+            Contains(testing::Field(&protocol::Request::command, Command::stop))
+        ) << "the scan goes on";
         test.sweep_throws = false;
         co_await test.until([&test] { return !test.sweeps.empty(); });
+    }(*this));
+}
+
+TEST_F(DeviceTest, AnErrorOfTheSystemThatIsThrownIsAFailureLikeOthers) {
+    open_throws = std::make_exception_ptr(boost::system::system_error(
+        make_error_code(boost::system::errc::too_many_files_open),
+        "thread"
+    ));
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::failed);
+        test.open_throws = nullptr;
+        co_await test.until_phase(Phase::scanning);
     }(*this));
 }
 
@@ -564,6 +610,38 @@ TEST_F(DeviceTest, AnExaminationInterruptsAnAttempt) {
             co_return a_diagnosis();
         });
         EXPECT_TRUE(diagnosis);
+    }(*this));
+}
+
+TEST_F(DeviceTest, AnExaminationThatFailsIsNoneAndTheLidarIsTriedAgain) {
+    scanner.answers = false;
+    make_device({.retry_delay = 1h});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::failed);
+        const auto diagnosis =
+            co_await test.device->diagnose([&test]() -> asio::awaitable<Diagnosis> {
+                test.scanner.answers = true;
+                throw std::runtime_error("no room for a diagnosis");
+                co_return Diagnosis{};
+            });
+        EXPECT_FALSE(diagnosis);
+        co_await test.until_phase(Phase::scanning);
+    }(*this));
+}
+
+TEST_F(DeviceTest, AnExaminationAskedForDuringAResetFindsTheLidarInHandAfterIt) {
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);
+        test.spawn([](DeviceTest& itself) -> asio::awaitable<void> {
+            (void)co_await itself.device->reset();
+        }(test));
+        co_await test.until_phase(Phase::identifying);
+        const auto diagnosis = co_await test.device->diagnose([]() -> asio::awaitable<Diagnosis> {
+            ADD_FAILURE() << "the port is in use";
+            co_return Diagnosis{};
+        });
+        EXPECT_FALSE(diagnosis);
     }(*this));
 }
 
