@@ -18,6 +18,10 @@ std::string_view next_step_after(error_code code) {
     if (code == errc::stream_silent) {
         return "check that the motor turns: it needs a good 5 V supply and must not be blocked";
     }
+    if (code == errc::not_turning) {
+        return "see that nothing blocks the motor, that its belt is on, and that the line does not "
+               "lose most of what it carries";
+    }
     if (code == errc::protection_stop) {
         return "see that nothing blocks the lidar, then reset it; if this comes back, it is broken";
     }

@@ -15,6 +15,8 @@ public:
             return "the lidar does not answer";
         case errc::stream_silent:
             return "the lidar sends no samples";
+        case errc::not_turning:
+            return "the lidar sends samples, but no complete turn";
         case errc::protection_stop:
             return "the lidar is in protection stop";
         case errc::unknown_mode:

@@ -8,6 +8,7 @@ namespace sweepcast::device {
 enum class errc {
     no_answer = 1,    ///< a request went unanswered
     stream_silent,    ///< the scan was started but no samples come
+    not_turning,      ///< samples come, but no revolutions
     protection_stop,  ///< the lidar reports a fault and has switched itself off
     unknown_mode,     ///< no scan mode of that name
     not_ready,        ///< the command did not take effect in time

@@ -21,6 +21,8 @@ constexpr auto descriptor_limit = 2000ms;
 constexpr auto spin_up_limit = 6s;
 /// Samples come every few milliseconds once they do.
 constexpr auto silence_limit = 1000ms;
+/// The slowest lidars turn twice a second.
+constexpr auto turn_limit = 3s;
 
 }  // namespace
 
@@ -47,6 +49,7 @@ asio::awaitable<Result<void>> Scan::run() {
 asio::awaitable<Result<void>> Scan::obey_regulator() {
     told_ = regulator_.setting();
     samples_due_ = Clock::now() + spin_up_limit;
+    turn_due_ = samples_due_ + turn_limit;
     co_return co_await run_motor(talk_, control_, told_);
 }
 
@@ -76,7 +79,13 @@ asio::awaitable<Result<void>> Scan::read_stream(protocol::AnswerType type) {
         }
         if (samples > 0 && !std::exchange(begun, true)) {
             samples_due_ = now + silence_limit;
+            turn_due_ = now + turn_limit;
             observer_.on_first_samples();
+        }
+        if (!finished.empty()) {
+            turn_due_ = std::max(turn_due_, now + turn_limit);
+        } else if (now >= turn_due_) {
+            co_return make_error_code(errc::not_turning);
         }
         for (auto& sweep : finished) {
             regulator_.observe(sweep.period);

@@ -47,7 +47,8 @@ public:
     /// Starts the motor and the scan, and gives out sweeps until something ends it; never returns
     /// success. The lidar may go on sending, and the motor turns: silence it and stop_motor().
     /// Errors: errc::no_answer if the scan was not accepted, errc::stream_silent if no samples
-    /// come (any more); protocol::errc::unsupported_answer_type; those of the link.
+    /// come (any more), errc::not_turning if they come but no revolution does;
+    /// protocol::errc::unsupported_answer_type; those of the link.
     boost::asio::awaitable<Result<void>> run();
 
 private:
@@ -62,6 +63,7 @@ private:
     ScanObserver& observer_;
     std::uint16_t told_{};  ///< what the motor was told last
     std::chrono::steady_clock::time_point samples_due_{};
+    std::chrono::steady_clock::time_point turn_due_{};  ///< the next complete revolution
 };
 
 }  // namespace sweepcast::device

@@ -341,6 +341,24 @@ TEST_F(DeviceTest, SilenceInMidScanIsAFailureWithACauseAndTheMotorOff) {
     }(*this));
 }
 
+TEST_F(DeviceTest, SamplesOfALidarThatDoesNotTurnAreAFailureWithACauseAndTheMotorOff) {
+    make_device({.retry_delay = 1h});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);
+        test.spawn([](DeviceTest& itself) -> asio::awaitable<void> {
+            while (itself.device->state().phase == Phase::scanning) {
+                itself.scanner.send_sample(90);
+                async::Notifier never(itself.context.get_executor());
+                co_await never.wait_until(std::chrono::steady_clock::now() + 1ms);
+            }
+        }(test));
+        co_await test.until_phase(Phase::failed);
+        EXPECT_THAT(test.device->state().cause, HasSubstr("no complete turn"));
+        EXPECT_THAT(test.device->state().hint, HasSubstr("motor"));
+        EXPECT_EQ(test.line.dtr, true);
+    }(*this));
+}
+
 TEST_F(DeviceTest, AModeAskedForBeforeTheModesAreKnownIsRefusedOnceTheyAre) {
     make_device({.scan_at_once = false, .retry_delay = 1ms});
     play([](DeviceTest& test) -> asio::awaitable<void> {
