@@ -61,6 +61,9 @@ Result<void, Problem> Device::set_speed(double hz) {
     if (auto problem = speed_problem(hz, motor_, state_.info.has_value())) {
         return std::move(*problem);
     }
+    if (hz == wanted_.speed_hz) {
+        return {};  // the regulator would begin anew
+    }
     wanted_.speed_hz = hz;
     regulator_.want(hz);
     state_.rotation = regulator_.rotation();

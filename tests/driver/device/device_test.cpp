@@ -570,6 +570,19 @@ TEST_F(DeviceTest, TellsAnAccessoryBoardTheDutyAlsoInMidScan) {
     EXPECT_EQ(scanner.requests.back(), protocol::set_motor_pwm_request(0));
 }
 
+TEST_F(DeviceTest, TheSameSpeedAgainDoesNotBeginTheRegulationAnew) {
+    scanner.info.model = 0x28;
+    scanner.board = protocol::AccessoryBoard{.controls_motor = true};
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);
+        EXPECT_TRUE(test.device->set_speed(5.0));
+        const auto told = test.phases.size();
+        EXPECT_TRUE(test.device->set_speed(5.0));
+        EXPECT_EQ(test.phases.size(), told);
+    }(*this));
+}
+
 TEST_F(DeviceTest, TellsALidarThatRegulatesItsSpeedTheRpm) {
     scanner.info.model = 0x61;
     scanner.list_modes();
