@@ -102,9 +102,10 @@ public:
     Result<void, Problem> set_speed(double hz);
 
     /// Has `examine` look at a lidar that is not in hand, while the device keeps away from the
-    /// port; who asks meanwhile gets the same answer. Nothing if the lidar is in hand, or the
-    /// device is shutting down: its state tells all there is to tell.
-    boost::asio::awaitable<std::optional<Diagnosis>> diagnose(Examine examine);
+    /// port; who asks meanwhile gets the same answer. Nothing if the lidar is in hand, or comes
+    /// into hand before the examination has begun: its state tells all there is to tell. A scan
+    /// that is just starting or stopping is awaited. Errors: errc::shutting_down, internal.
+    boost::asio::awaitable<Result<std::optional<Diagnosis>, Problem>> diagnose(Examine examine);
 
     /// Whether the lidar has been identified on the connection that is open.
     [[nodiscard]] bool in_hand() const;
@@ -126,6 +127,7 @@ private:
     struct Examination {
         Examine examine;
         std::optional<Diagnosis> result{};
+        bool came_into_hand{};  ///< before it began
     };
 
     boost::asio::awaitable<void> examine();

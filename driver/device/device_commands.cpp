@@ -91,9 +91,19 @@ asio::awaitable<Result<void, Problem>> Device::reset() {
     co_return co_await settle([this] { return !wanted_.reset && settled(); }, reset_limit);
 }
 
-asio::awaitable<std::optional<Diagnosis>> Device::diagnose(Examine examine) {
+asio::awaitable<Result<std::optional<Diagnosis>, Problem>> Device::diagnose(Examine examine) {
+    if (wanted_.shutdown) {
+        co_return advice(errc::shutting_down);
+    }
+    const auto settled_by = Clock::now() + start_limit;
+    const auto on_its_way = [this] {
+        return state_.phase == Phase::starting || state_.phase == Phase::stopping;
+    };
+    for (bool in_time = true; on_its_way() && !wanted_.shutdown && in_time;) {
+        in_time = co_await changed_.wait_until(settled_by);
+    }
     if (in_hand()) {
-        co_return std::nullopt;
+        co_return std::optional<Diagnosis>();
     }
     if (!examination_) {
         examination_ = std::make_shared<Examination>(Examination{std::move(examine)});
@@ -102,8 +112,16 @@ asio::awaitable<std::optional<Diagnosis>> Device::diagnose(Examine examine) {
     const auto wanted = examination_;
     while (examination_ == wanted && !wanted_.shutdown) {
         co_await changed_.wait_until(Clock::time_point::max());
+        if (in_hand() && examination_ == wanted) {  // it was being reset, or answered just now
+            wanted->came_into_hand = true;
+            examination_.reset();
+            changed_.notify();  // whoever waits for the same
+        }
     }
-    co_return wanted->result;
+    if (wanted->result || wanted->came_into_hand) {
+        co_return wanted->result;
+    }
+    co_return advice(wanted_.shutdown ? errc::shutting_down : errc::internal);
 }
 
 bool Device::in_hand() const {

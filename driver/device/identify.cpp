@@ -94,29 +94,6 @@ asio::awaitable<Result<MotorTraits>> ask_rotation(Conversation& talk, MotorTrait
     co_return traits;
 }
 
-/// Fills in what only a lidar that knows GET_LIDAR_CONF can tell.
-asio::awaitable<Result<void>> ask_details(Conversation& talk, Identity& identity) {
-    const auto control = co_await ask_motor_control(talk, identity.info);
-    if (!control) {
-        co_return control.error();
-    }
-    identity.motor.control = *control;
-    if (!protocol::knows_lidar_conf(identity.info) || !identity.modes.front().id) {
-        co_return Result<void>{};
-    }
-    const auto alias = co_await ask_optional<std::string>(talk, ConfType::model_alias, to_text);
-    if (!alias) {
-        co_return alias.error();
-    }
-    identity.alias = alias->value_or("");
-    const auto motor = co_await ask_rotation(talk, identity.motor);
-    if (!motor) {
-        co_return motor.error();
-    }
-    identity.motor = *motor;
-    co_return Result<void>{};
-}
-
 }  // namespace
 
 asio::awaitable<Result<protocol::DeviceInfo>> ask_info(Conversation& talk) {
@@ -160,6 +137,28 @@ asio::awaitable<Result<Identity>> identify(Conversation& talk) {
         co_return detailed.error();
     }
     co_return identity;
+}
+
+asio::awaitable<Result<void>> ask_details(Conversation& talk, Identity& identity) {
+    const auto control = co_await ask_motor_control(talk, identity.info);
+    if (!control) {
+        co_return control.error();
+    }
+    identity.motor.control = *control;
+    if (!protocol::knows_lidar_conf(identity.info) || !identity.modes.front().id) {
+        co_return Result<void>{};
+    }
+    const auto alias = co_await ask_optional<std::string>(talk, ConfType::model_alias, to_text);
+    if (!alias) {
+        co_return alias.error();
+    }
+    identity.alias = alias->value_or("");
+    const auto motor = co_await ask_rotation(talk, identity.motor);
+    if (!motor) {
+        co_return motor.error();
+    }
+    identity.motor = *motor;
+    co_return Result<void>{};
 }
 
 std::string shown_name(const Identity& identity) {

@@ -36,6 +36,10 @@ boost::asio::awaitable<Result<protocol::DeviceInfo>> ask_info(Conversation& talk
 /// Errors: errc::no_answer; those of the link.
 boost::asio::awaitable<Result<protocol::Health>> ask_health(Conversation& talk);
 
+/// Asks for the alias and the motor, of a lidar whose info and modes are known, and fills them in.
+/// What it does not know gets the documented default. Errors: those of the link.
+boost::asio::awaitable<Result<void>> ask_details(Conversation& talk, Identity& identity);
+
 /// The name to show: the alias if the lidar has one, else the model's.
 [[nodiscard]] std::string shown_name(const Identity& identity);
 

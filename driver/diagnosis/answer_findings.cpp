@@ -113,8 +113,18 @@ Finding silent_network(const LineLook& line) {
 
 Finding wrong_baud(const LineLook& line, const Heard& heard) {
     const auto who = heard.info
-                         ? fmt::format("the lidar, an {},", protocol::model_name(heard.info->model))
+                         ? fmt::format("the lidar ({})", protocol::model_name(heard.info->model))
                          : std::string("the lidar");
+    if (heard.info && protocol::knows_baud_negotiation(*heard.info)) {
+        return {
+            Step::bytes,
+            Verdict::warning,
+            all_heard(line),
+            fmt::format("{} speaks at {} baud, not at {}", who, heard.baud, *line.asked_baud),
+            {"nobody has talked it into another speed since it got its power"},
+            {"nothing need be done: a gateway talks it into the speed asked for",
+             fmt::format("to save that time, write ?baud={}, or leave it out", heard.baud)}};
+    }
     return {
         Step::bytes,
         Verdict::failed,
@@ -210,6 +220,29 @@ const Heard& LineLook::best() const {
     return *std::ranges::max_element(heard, {}, &Heard::kind);
 }
 
+Finding judge_broken_line(const LineLook& line, const error_code& failure) {
+    Finding finding{
+        Step::bytes,
+        Verdict::failed,
+        failure.message(),
+        fmt::format("the connection to {} broke while we listened", line.url),
+        {"the adapter was unplugged, or has a loose contact",
+         "the adapter switched itself off: the lidar draws more current than the USB port gives"},
+        {std::string(cable_advice),
+         "see whether `sudo dmesg | tail` speaks of over-current or of a disconnect",
+         std::string(supply_advice)}};
+    if (line.network) {
+        finding.likely_causes = {
+            "nothing listens on this port of that host: another address or port is the lidar's",
+            "someone else is connected to the lidar, or to the bridge that it hangs on"};
+        finding.next_steps = {
+            "check address and port (usual: udp://192.168.11.2:8089 for a T1 or S2E, port 20108 "
+            "for the TCP bridge of an S1)",
+            "stop other programs that use it, then run again: sweepcast doctor " + line.url};
+    }
+    return finding;
+}
+
 Finding judge_bytes(const LineLook& line) {
     const auto& best = line.best();
     if (best.kind == HeardKind::nothing) {
@@ -243,7 +276,7 @@ Finding judge_info(const std::optional<protocol::DeviceInfo>& info, const std::s
         return {
             Step::info,
             Verdict::failed,
-            "the answer broke off",
+            "the answer broke off, or was never the same twice",
             "the lidar's answer does not come whole",
             {"bytes are lost on the line: a bad cable or plug, or an adapter that is too slow",
              "another program reads the same port and takes some of them"},
@@ -326,10 +359,12 @@ Finding judge_modes(const Result<std::vector<device::ScanMode>>& modes) {
     std::string text;
     for (const auto& mode : *modes) {
         text += fmt::format(
-            "{}{} ({:.1f} kHz{})",
+            "{}{} ({}{})",
             text.empty() ? "" : ", ",
             mode.name,
-            mode.samples_per_second() / 1000.0,
+            mode.sample_duration.count() > 0
+                ? fmt::format("{:.1f} kHz", mode.samples_per_second() / 1000.0)
+                : "rate not told",
             mode.typical ? ", typical" : ""
         );
     }

@@ -27,6 +27,8 @@ struct LineLook {
     [[nodiscard]] const Heard& best() const;
 };
 
+/// The connection broke while one listened.
+[[nodiscard]] Finding judge_broken_line(const LineLook& line, const error_code& failure);
 /// `line.heard` is not empty.
 [[nodiscard]] Finding judge_bytes(const LineLook& line);
 /// Of a line that passed judge_bytes().

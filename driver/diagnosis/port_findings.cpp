@@ -124,6 +124,14 @@ Finding judge_holder(const PortLook& port, bool refused) {
     finding.likely_causes.emplace_back(
         "two programs that read one port take the bytes from each other, so only one may have it"
     );
+    if (std::ranges::any_of(port.facts.holders, [](const auto& holder) {
+            return holder.command == "sweepcast";
+        })) {
+        finding.next_steps.emplace_back(
+            "a gateway tells of its own lidars: curl "
+            "http://127.0.0.1:8080/api/v1/lidars/ID/diagnosis"
+        );
+    }
     finding.next_steps.push_back("then run again: sweepcast doctor " + port.path);
     return finding;
 }

@@ -131,6 +131,9 @@ std::string in_percent(double part) {
 
 std::string count(const QualityLook& quality) {
     const auto& line = quality.line;
+    if (line.checksum_errors + line.lost_packets + line.skipped_bytes == 0) {
+        return fmt::format("{} bytes, {} samples, none damaged or lost", line.bytes, line.samples);
+    }
     return fmt::format(
         "{} bytes, {} samples, {} damaged packets, {} lost packets, {} bytes without meaning: {} "
         "damaged",

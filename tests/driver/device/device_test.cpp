@@ -7,6 +7,7 @@
 #include "tests/driver/device/memory_link.hpp"
 
 #include <boost/asio/co_spawn.hpp>
+#include <boost/asio/experimental/awaitable_operators.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/system/system_error.hpp>
@@ -614,8 +615,7 @@ TEST_F(DeviceTest, AnExaminationHasThePortToItself) {
                 test.scanner.answers = true;
                 co_return a_diagnosis();
             });
-        EXPECT_TRUE(diagnosis);
-        EXPECT_EQ(diagnosis->port, "here");
+        EXPECT_EQ(diagnosis->value().port, "here");
         co_await test.until_phase(Phase::scanning);  // at once, though the retry is an hour away
     }(*this));
 }
@@ -628,8 +628,29 @@ TEST_F(DeviceTest, ALidarInHandIsNotExaminedFromOutside) {
             ADD_FAILURE() << "the port is in use";
             co_return Diagnosis{};
         });
-        EXPECT_FALSE(diagnosis);
+        EXPECT_TRUE(diagnosis);
+        EXPECT_FALSE(*diagnosis) << "its state tells";
     }(*this));
+}
+
+TEST_F(DeviceTest, ALidarThatComesIntoHandMeanwhileIsNotExamined) {
+    scanner.turns_at_start = 0;
+    make_device({.scan_at_once = false});
+    const auto ask = [](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::identifying);
+        const auto diagnosis = co_await test.device->diagnose([]() -> asio::awaitable<Diagnosis> {
+            ADD_FAILURE() << "the port is in use";
+            co_return Diagnosis{};
+        });
+        EXPECT_TRUE(diagnosis);
+        EXPECT_FALSE(*diagnosis);
+    };
+    play([](DeviceTest& test, auto asked) -> asio::awaitable<void> {
+        using namespace asio::experimental::awaitable_operators;
+        co_await test.until_phase(Phase::idle);
+        const auto reset = co_await (test.device->reset() && asked(test));
+        EXPECT_TRUE(reset);
+    }(*this, ask));
 }
 
 TEST_F(DeviceTest, AnExaminationInterruptsAnAttempt) {
@@ -640,7 +661,7 @@ TEST_F(DeviceTest, AnExaminationInterruptsAnAttempt) {
         const auto diagnosis = co_await test.device->diagnose([]() -> asio::awaitable<Diagnosis> {
             co_return a_diagnosis();
         });
-        EXPECT_TRUE(diagnosis);
+        EXPECT_EQ(diagnosis->value().port, "here");
     }(*this));
 }
 
@@ -689,6 +710,7 @@ TEST_F(DeviceTest, ShuttingDownEndsAnExamination) {
                 co_return Diagnosis{};
             });
         EXPECT_FALSE(diagnosis);
+        EXPECT_EQ(diagnosis.error().code, errc::shutting_down);
     }(*this));
 }
 

@@ -278,7 +278,7 @@ std::vector<Row> answer_rows() {
          judge_bytes(forced),
          Step::bytes,
          Verdict::failed,
-         "an A2M12, speaks at 256000 baud, not at 115200",
+         "(A2M12) speaks at 256000 baud, not at 115200",
          "another model",
          "?baud=256000"},
         {"Noise",
