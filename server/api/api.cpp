@@ -1,5 +1,6 @@
 #include "server/api/api.hpp"
 
+#include "server/api/diagnosis_message.hpp"
 #include "server/api/errors.hpp"
 #include "server/api/json.hpp"
 #include "server/api/scan_export.hpp"
@@ -28,6 +29,7 @@ const Api::Route Api::routes[] = {
     {"GET", "/api/v1/lidars", nullptr, &Api::list_lidars},
     {"GET", "/api/v1/lidars/", "", &Api::get_lidar},
     {"GET", "/api/v1/lidars/", "/scan", &Api::latest_scan},
+    {"GET", "/api/v1/lidars/", "/diagnosis", &Api::diagnosis},
     {"PATCH", "/api/v1/lidars/", "", &Api::update},
     {"POST", "/api/v1/lidars/", "/start", &Api::start},
     {"POST", "/api/v1/lidars/", "/stop", &Api::stop},
@@ -213,6 +215,20 @@ asio::awaitable<Response> Api::latest_scan(const Request& request, const std::st
     }
     v1::LatestScan message;
     to_message(*sweep, message);
+    co_return Response{200, "application/json", to_json(message), {}};
+}
+
+asio::awaitable<Response> Api::diagnosis(const Request&, const std::string& id) const {
+    const auto lidar = hub_.find(id);
+    if (!lidar) {
+        co_return lidar_not_found(id);
+    }
+    const auto diagnosis = co_await control_.diagnose(lidar->number);
+    if (!diagnosis) {
+        co_return error_response(diagnosis.error());
+    }
+    v1::Diagnosis message;
+    to_message(*diagnosis, message);
     co_return Response{200, "application/json", to_json(message), {}};
 }
 

@@ -1,6 +1,7 @@
 // Api: the routes under /api/v1 and their handlers. Value in, value out: no socket, no Beast.
 #pragma once
 
+#include "driver/device/diagnosis.hpp"
 #include "driver/protocol/result.hpp"
 #include "server/api/request.hpp"
 #include "server/hub/local_hub.hpp"
@@ -28,6 +29,9 @@ public:
     virtual boost::asio::awaitable<Outcome> stop(std::uint32_t lidar) = 0;
     virtual boost::asio::awaitable<Outcome> reset(std::uint32_t lidar) = 0;
     virtual boost::asio::awaitable<Outcome> update(std::uint32_t lidar, LidarUpdate update) = 0;
+    /// What is wrong with it, if anything. Does not disturb a scan.
+    virtual boost::asio::awaitable<Result<device::Diagnosis, Problem>> diagnose(std::uint32_t lidar
+    ) = 0;
 };
 
 /// The API as seen from one worker: what it tells comes from that worker's share of the hub.
@@ -51,6 +55,7 @@ private:
     boost::asio::awaitable<Response> reset(const Request&, const std::string& id) const;
     boost::asio::awaitable<Response> update(const Request&, const std::string& id) const;
     boost::asio::awaitable<Response> latest_scan(const Request&, const std::string& id) const;
+    boost::asio::awaitable<Response> diagnosis(const Request&, const std::string& id) const;
     boost::asio::awaitable<Response> healthz(const Request&, const std::string& id) const;
 
     const hub::LocalHub& hub_;

@@ -246,6 +246,7 @@ Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make
         .serial_port = {},
         .is_virtual = false,
         .is_stand_in = url.is_stand_in,
+        .way = {},
         .open_link = {}};
     link::LinkUrl way;
     if (const auto* wanted = std::get_if<VirtualLidarUrl>(&url.where)) {
@@ -264,6 +265,7 @@ Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make
     place.open_link = [executor, way](std::uint32_t baud) {
         return link::open_link(executor, way, baud);
     };
+    place.way = way;
     return place;
 }
 
@@ -332,6 +334,11 @@ Gateway::update(std::uint32_t lidar, api::LidarUpdate update) {
 asio::awaitable<api::LidarControl::Outcome> Gateway::reset(std::uint32_t lidar) {
     auto& managed = *lidars_.at(lidar - 1);
     co_return co_await command(managed, managed.device().reset());
+}
+
+asio::awaitable<Result<device::Diagnosis, Problem>> Gateway::diagnose(std::uint32_t lidar) {
+    auto& managed = *lidars_.at(lidar - 1);
+    co_return co_await async::run_on(managed.worker().executor(), managed.diagnose());
 }
 
 }  // namespace sweepcast::gateway

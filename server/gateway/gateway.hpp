@@ -74,6 +74,8 @@ private:
     boost::asio::awaitable<Outcome> stop(std::uint32_t lidar) override;
     boost::asio::awaitable<Outcome> reset(std::uint32_t lidar) override;
     boost::asio::awaitable<Outcome> update(std::uint32_t lidar, api::LidarUpdate update) override;
+    boost::asio::awaitable<Result<device::Diagnosis, Problem>> diagnose(std::uint32_t lidar
+    ) override;
 
     GatewayOptions options_;
     std::shared_ptr<spdlog::logger> log_;

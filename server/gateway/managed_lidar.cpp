@@ -1,11 +1,13 @@
 #include "server/gateway/managed_lidar.hpp"
 
+#include "driver/diagnosis/diagnose.hpp"
 #include "driver/protocol/reply.hpp"
 #include "server/stream/messages.hpp"
 
 #include <boost/asio/post.hpp>
 
 #include <utility>
+#include <vector>
 
 namespace sweepcast::gateway {
 
@@ -39,6 +41,22 @@ void ManagedLidar::start() {
 
 void ManagedLidar::shut_down() {
     asio::post(worker_.executor(), [this] { device_.shut_down(); });
+}
+
+asio::awaitable<Result<device::Diagnosis, Problem>> ManagedLidar::diagnose() {
+    const auto baud = device_.state().line.baud;
+    auto examine = [executor = worker_.executor(), way = place_.way, baud] {
+        std::vector<std::uint32_t> hints(baud > 0 ? 1 : 0, baud);
+        return diagnosis::diagnose(executor, way, std::move(hints), {});
+    };
+    auto examined = co_await device_.diagnose(std::move(examine));
+    if (!examined) {
+        co_return examined.error();
+    }
+    if (!*examined) {
+        co_return diagnosis::diagnosis_of(device_.state(), place_.way);
+    }
+    co_return std::move(**examined);
 }
 
 asio::awaitable<void> ManagedLidar::live() {

@@ -3,6 +3,7 @@
 
 #include "driver/async/worker.hpp"
 #include "driver/device/device.hpp"
+#include "driver/link/link_url.hpp"
 #include "server/frame/frame_encoder.hpp"
 #include "server/gateway/lidar_ids.hpp"
 #include "server/gateway/lidar_memory.hpp"
@@ -28,6 +29,7 @@ struct LidarPlace {
         serial_port;  ///< its path, to remember the line speed by; empty: not to be remembered
     bool is_virtual{};
     bool is_stand_in{};
+    link::LinkUrl way;  ///< that open_link opens
     device::OpenLink open_link;
 };
 
@@ -55,6 +57,10 @@ public:
     [[nodiscard]] async::Worker& worker() { return worker_; }
     [[nodiscard]] device::Device& device() { return device_; }
     [[nodiscard]] hub::LidarSnapshotPtr snapshot() const { return snapshot_; }
+
+    /// What is wrong with the lidar: told from its state if it is in hand, else by examining it.
+    /// Errors: as Device::diagnose().
+    boost::asio::awaitable<Result<device::Diagnosis, Problem>> diagnose();
 
 private:
     void on_state(const device::DeviceState& state) override;

@@ -44,6 +44,23 @@ public:
         );
     }
 
+    asio::awaitable<Result<device::Diagnosis, Problem>> diagnose(std::uint32_t lidar) override {
+        orders.push_back("diagnose " + std::to_string(lidar));
+        if (problem) {
+            co_return *problem;
+        }
+        device::Diagnosis diagnosis;
+        diagnosis.port = "/dev/ttyUSB0";
+        diagnosis.checks = {
+            {"port", "The port exists", device::Verdict::ok, "CP2102"},
+            {"open", "It opens", device::Verdict::failed, "no"},
+            {"bytes", "It is heard", device::Verdict::not_run, ""}};
+        diagnosis.cause = "it does not open";
+        diagnosis.likely_causes = {"rust"};
+        diagnosis.next_steps = {"oil", "wait"};
+        co_return diagnosis;
+    }
+
     Outcome note(const std::string& order) {
         orders.push_back(order);
         if (problem) {
@@ -213,6 +230,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"POST", "/api/v1/lidars/A0E1C2D3/start", "mode=Express", 400, "bad_body"},
         Refused{"POST", "/api/v1/lidars/A0E1C2D3/start", R"({"mood": "Express"})", 400, "bad_body"},
         Refused{"POST", "/api/v1/lidars/A0E1C2D3/start", R"({"mode": 7})", 400, "bad_body"},
+        Refused{"GET", "/api/v1/lidars/nobody/diagnosis", "", 404, "lidar_not_found"},
+        Refused{"POST", "/api/v1/lidars/A0E1C2D3/diagnosis", "", 405, "method_not_allowed"},
         Refused{"GET", "/api/v1/lidars/A0E1C2D3/scan", "", 404, "no_scan_yet"},
         Refused{"GET", "/api/v1/lidars/A0E1C2D3/scan?format=xml", "", 400, "unknown_format"}
     )
@@ -248,6 +267,30 @@ TEST_F(ApiTest, TurnsALidarsProblemsIntoStatusAndCode) {
         EXPECT_EQ(response.status, status);
         EXPECT_EQ(error_in(response).code(), name);
     }
+}
+
+TEST_F(ApiTest, GivesTheDiagnosisAsJson) {
+    const auto response = ask("GET", "/api/v1/lidars/A0E1C2D3/diagnosis");
+    EXPECT_EQ(response.status, 200);
+    EXPECT_THAT(control.orders, ElementsAre("diagnose 1"));
+    v1::Diagnosis diagnosis;
+    ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(response.body, &diagnosis).ok());
+    EXPECT_EQ(diagnosis.port(), "/dev/ttyUSB0");
+    EXPECT_EQ(diagnosis.verdict(), v1::Diagnosis::FAILED);
+    ASSERT_EQ(diagnosis.checks_size(), 3);
+    EXPECT_EQ(diagnosis.checks(0).finding(), "CP2102");
+    EXPECT_EQ(diagnosis.checks(1).verdict(), v1::Diagnosis::FAILED);
+    EXPECT_EQ(diagnosis.checks(2).verdict(), v1::Diagnosis::NOT_RUN);
+    EXPECT_EQ(diagnosis.cause(), "it does not open");
+    EXPECT_THAT(diagnosis.likely_causes(), ElementsAre("rust"));
+    EXPECT_THAT(diagnosis.next_steps(), ElementsAre("oil", "wait"));
+}
+
+TEST_F(ApiTest, SaysWhyThereIsNoDiagnosis) {
+    control.problem = device::advice(device::errc::shutting_down);
+    const auto response = ask("GET", "/api/v1/lidars/A0E1C2D3/diagnosis");
+    EXPECT_EQ(response.status, 503);
+    EXPECT_EQ(error_in(response).code(), "shutting_down");
 }
 
 TEST_F(ApiTest, GivesTheLatestSweepAsJson) {
