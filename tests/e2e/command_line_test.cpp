@@ -29,7 +29,8 @@ Outcome call(std::vector<std::string> arguments) {
 }
 
 TEST(CommandLine, HelpHasExamplesForEveryCommand) {
-    for (const auto* command : {"serve", "watch", "virtual", "probe", "capture", "decode"}) {
+    for (const auto* command :
+         {"serve", "watch", "virtual", "probe", "doctor", "capture", "decode"}) {
         const auto help = call({command, "--help"});
         EXPECT_EQ(help.exit_code, 0) << command;
         EXPECT_THAT(help.output, HasSubstr("Example")) << command;
@@ -71,6 +72,9 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{{"serve", "--lidar", "virtual:a1m8?fault=nonsense"}, "protection-stop"},
         Mistake{{"probe", "/nonexistent"}, "/nonexistent"},
         Mistake{{"probe", "/etc/passwd"}, "/etc/passwd"},
+        Mistake{{"doctor", "usb://1"}, "udp://"},
+        Mistake{{"doctor", "/etc/passwd"}, "/etc/passwd is a regular file"},
+        Mistake{{"doctor", "--discover", "x", "y"}, "--discover"},
         Mistake{{"capture", "/nonexistent"}, "/nonexistent"},
         Mistake{{"capture", "/nonexistent", "-o", "/etc"}, "cannot write /etc: Is a directory"},
         Mistake{{"capture", "/nonexistent", "-o", "/nonexistent/file"}, "No such file"},

@@ -35,7 +35,7 @@ private:
 struct VirtualLidarProcess {
     explicit VirtualLidarProcess(std::vector<std::string> options = {});
     Process process;
-    std::string port;
+    std::string port;  ///< what to open: a path or a URL
 };
 
 /// `sweepcast serve` with these options, on ports of its own.
