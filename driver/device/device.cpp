@@ -250,7 +250,10 @@ asio::awaitable<Result<void>> Device::idle(Conversation& talk, Phase phase) {
         co_return off;
     }
     const auto known = state_.health;
-    set_phase(phase, phase == Phase::protection_stop ? advice(errc::protection_stop) : Problem{});
+    set_phase(
+        phase,
+        phase == Phase::protection_stop ? advice(errc::protection_stop) : mode_problem()
+    );
     while (state_.health == known) {
         const auto ask_at = Clock::now() + options_.health_interval;
         while (Clock::now() < ask_at) {
@@ -297,7 +300,7 @@ asio::awaitable<Result<void>> Device::scan(Conversation& talk) {
 }
 
 void Device::on_first_samples() {
-    set_phase(Phase::scanning);
+    set_phase(Phase::scanning, mode_problem());
 }
 
 void Device::on_revolution(protocol::Sweep sweep, protocol::AnswerType type) {
@@ -373,13 +376,23 @@ void Device::adopt(Identity identity) {
     state_.rotation = regulator_.rotation();
     const auto* mode = wanted_mode();
     if (mode == nullptr) {
-        const auto problem = unknown_mode(wanted_.mode, state_.modes);
-        log_->warn("{}: {}; taking the one that the lidar recommends", problem.cause, problem.hint);
+        const auto problem = mode_problem();
+        log_->warn("{}: {}", problem.cause, problem.hint);
         mode = best_mode(state_.modes);
     }
     if (mode != nullptr) {
         state_.mode = mode->name;
     }
+}
+
+/// That the lidar lacks the mode in which it was told to scan, if so: no reason not to scan.
+Problem Device::mode_problem() const {
+    if (wanted_mode() != nullptr || state_.modes.empty()) {
+        return {};
+    }
+    auto problem = unknown_mode(wanted_.mode, state_.modes);
+    problem.cause += ": taking the one that the lidar recommends";
+    return problem;
 }
 
 void Device::set_phase(Phase phase, const Problem& why) {
@@ -399,8 +412,9 @@ void Device::set_phase(Phase phase, const Problem& why) {
     state_.hint = why.hint;
     state_.since = std::chrono::system_clock::now();
     ++state_version_;
-    if (in_hand()) {
-        examination_.reset();  // who asked for it meanwhile is told that there is none
+    if (in_hand() && examination_) {  // asked for while it was being reset, or had just answered
+        examination_->came_into_hand = true;
+        examination_.reset();
     }
     tell_state();
 }

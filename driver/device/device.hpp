@@ -156,6 +156,7 @@ private:
     void tell_failure(const Problem& problem);
     void poke();
     [[nodiscard]] const ScanMode* wanted_mode() const;
+    [[nodiscard]] Problem mode_problem() const;
     [[nodiscard]] bool settled() const;
 
     OpenLink open_link_;

@@ -24,21 +24,31 @@ asio::awaitable<Result<void, Problem>> Device::start(std::string mode) {
     if (!mode.empty() && !state_.modes.empty() && find_mode(state_.modes, mode) == nullptr) {
         co_return unknown_mode(mode, state_.modes);
     }
-    const bool other_mode = !mode.empty() && mode != wanted_.mode;
+    const bool names_mode = !mode.empty();
+    const bool other_mode = names_mode && mode != wanted_.mode;
     if (other_mode) {
         wanted_.mode = std::move(mode);
     }
     if (!std::exchange(wanted_.scanning, true) || other_mode) {
         ++wanted_.command;
     }
-    co_return co_await settle(
-        [this] {
+    const auto lacks_mode = [this] { return !state_.modes.empty() && wanted_mode() == nullptr; };
+    const auto settled = co_await settle(
+        [this, names_mode, lacks_mode] {
+            if (lacks_mode()) {
+                return names_mode || state_.phase == Phase::scanning;
+            }
             const auto* mode_wanted = wanted_mode();
             return state_.phase == Phase::scanning && mode_wanted != nullptr &&
                    mode_wanted->name == state_.mode;
         },
         start_limit
     );
+    if (settled && names_mode && lacks_mode()) {
+        // Asked for before it was known which modes there are.
+        co_return unknown_mode(std::exchange(wanted_.mode, ""), state_.modes);
+    }
+    co_return settled;
 }
 
 asio::awaitable<Result<void, Problem>> Device::set_mode(std::string mode) {
@@ -52,6 +62,10 @@ asio::awaitable<Result<void, Problem>> Device::set_mode(std::string mode) {
     wanted_.mode = std::move(mode);
     if (found != nullptr) {
         state_.mode = found->name;
+        if (state_.phase == Phase::idle) {  // what was said of another mode
+            state_.cause.clear();
+            state_.hint.clear();
+        }
         tell_state();
     }
     co_return Result<void, Problem>{};
@@ -112,11 +126,6 @@ asio::awaitable<Result<std::optional<Diagnosis>, Problem>> Device::diagnose(Exam
     const auto wanted = examination_;
     while (examination_ == wanted && !wanted_.shutdown) {
         co_await changed_.wait_until(Clock::time_point::max());
-        if (in_hand() && examination_ == wanted) {  // it was being reset, or answered just now
-            wanted->came_into_hand = true;
-            examination_.reset();
-            changed_.notify();  // whoever waits for the same
-        }
     }
     if (wanted->result || wanted->came_into_hand) {
         co_return wanted->result;
@@ -148,10 +157,6 @@ Device::settle(std::function<bool()> reached, std::chrono::milliseconds limit) {
         const bool failed = state_.phase == Phase::failed || state_.phase == Phase::protection_stop;
         if (failed && state_version_ != version) {
             co_return Problem{make_error_code(errc::not_ready), state_.cause, state_.hint};
-        }
-        if (!state_.modes.empty() && wanted_mode() == nullptr) {
-            // Asked for before it was known which modes there are.
-            co_return unknown_mode(std::exchange(wanted_.mode, ""), state_.modes);
         }
         const bool changed = co_await changed_.wait_until(deadline);
         if (!changed && !reached()) {

@@ -472,6 +472,25 @@ TEST_F(DeviceTest, ChangesTheModeOfAnIdleLidarForTheNextStart) {
     EXPECT_EQ(scanner.count(Command::scan), 0U);
 }
 
+TEST_F(DeviceTest, ScansAllTheSameIfItHasNoSuchModeAndSaysSoUntilItIsToldAnother) {
+    make_device({.mode = "Turbo", .retry_delay = 1ms});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);
+        EXPECT_THAT(test.device->state().cause, testing::HasSubstr("no scan mode \"Turbo\""));
+        EXPECT_THAT(test.device->state().hint, testing::HasSubstr("Standard"));
+        EXPECT_TRUE(co_await test.device->stop());
+        EXPECT_THAT(test.device->state().cause, testing::HasSubstr("Turbo"));
+        EXPECT_TRUE(co_await test.device->start(""));
+        EXPECT_THAT(test.device->state().cause, testing::HasSubstr("Turbo"));
+        EXPECT_TRUE(co_await test.device->stop());
+        EXPECT_TRUE(co_await test.device->set_mode("Standard"));
+        EXPECT_EQ(test.device->state().cause, "");
+        EXPECT_TRUE(co_await test.device->start(""));
+        EXPECT_EQ(test.device->state().cause, "");
+        EXPECT_EQ(test.device->state().mode, "Standard");
+    }(*this));
+}
+
 TEST_F(DeviceTest, ChangesTheModeOfAScanningLidarAtOnce) {
     make_device();
     play([](DeviceTest& test) -> asio::awaitable<void> {
@@ -633,26 +652,6 @@ TEST_F(DeviceTest, ALidarInHandIsNotExaminedFromOutside) {
     }(*this));
 }
 
-TEST_F(DeviceTest, ALidarThatComesIntoHandMeanwhileIsNotExamined) {
-    scanner.turns_at_start = 0;
-    make_device({.scan_at_once = false});
-    const auto ask = [](DeviceTest& test) -> asio::awaitable<void> {
-        co_await test.until_phase(Phase::identifying);
-        const auto diagnosis = co_await test.device->diagnose([]() -> asio::awaitable<Diagnosis> {
-            ADD_FAILURE() << "the port is in use";
-            co_return Diagnosis{};
-        });
-        EXPECT_TRUE(diagnosis);
-        EXPECT_FALSE(*diagnosis);
-    };
-    play([](DeviceTest& test, auto asked) -> asio::awaitable<void> {
-        using namespace asio::experimental::awaitable_operators;
-        co_await test.until_phase(Phase::idle);
-        const auto reset = co_await (test.device->reset() && asked(test));
-        EXPECT_TRUE(reset);
-    }(*this, ask));
-}
-
 TEST_F(DeviceTest, AnExaminationInterruptsAnAttempt) {
     scanner.answers = false;
     make_device({.retry_delay = 1h});
@@ -693,7 +692,8 @@ TEST_F(DeviceTest, AnExaminationAskedForDuringAResetFindsTheLidarInHandAfterIt) 
             ADD_FAILURE() << "the port is in use";
             co_return Diagnosis{};
         });
-        EXPECT_FALSE(diagnosis);
+        EXPECT_TRUE(diagnosis);
+        EXPECT_FALSE(*diagnosis) << "its state tells";
     }(*this));
 }
 
