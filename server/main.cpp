@@ -30,6 +30,7 @@ int run(int argc, char** argv) {
     sweepcast::cli::add_virtual_command(app, exit_code);
     sweepcast::cli::add_probe_command(app, exit_code);
     sweepcast::cli::add_doctor_command(app, exit_code);
+    sweepcast::cli::add_address_command(app, exit_code);
     sweepcast::cli::add_capture_command(app, exit_code);
     sweepcast::cli::add_decode_command(app, exit_code);
     try {

@@ -18,5 +18,6 @@ void add_serve_command(CLI::App& app, int& exit_code);
 void add_watch_command(CLI::App& app, int& exit_code);
 void add_probe_command(CLI::App& app, int& exit_code);
 void add_doctor_command(CLI::App& app, int& exit_code);
+void add_address_command(CLI::App& app, int& exit_code);
 
 }  // namespace sweepcast::cli

@@ -30,7 +30,7 @@ Outcome call(std::vector<std::string> arguments) {
 
 TEST(CommandLine, HelpHasExamplesForEveryCommand) {
     for (const auto* command :
-         {"serve", "watch", "virtual", "probe", "doctor", "capture", "decode"}) {
+         {"serve", "watch", "virtual", "probe", "doctor", "address", "capture", "decode"}) {
         const auto help = call({command, "--help"});
         EXPECT_EQ(help.exit_code, 0) << command;
         EXPECT_THAT(help.output, HasSubstr("Example")) << command;
@@ -75,6 +75,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{{"doctor", "usb://1"}, "udp://"},
         Mistake{{"doctor", "/etc/passwd"}, "/etc/passwd is a regular file"},
         Mistake{{"doctor", "--discover", "x", "y"}, "--discover"},
+        Mistake{{"address", "/nonexistent"}, "/nonexistent"},
+        Mistake{{"address", "udp://127.0.0.1:1", "--ip", "10.0.0.256"}, "--ip 192.168.11.2"},
         Mistake{{"capture", "/nonexistent"}, "/nonexistent"},
         Mistake{{"capture", "/nonexistent", "-o", "/etc"}, "cannot write /etc: Is a directory"},
         Mistake{{"capture", "/nonexistent", "-o", "/nonexistent/file"}, "No such file"},

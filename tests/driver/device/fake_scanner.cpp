@@ -89,6 +89,20 @@ void FakeScanner::answer_conf(const protocol::Request& request) {
     reply(protocol::ReplyType::lidar_conf, answer);
 }
 
+void FakeScanner::set_conf(std::span<const std::uint8_t> payload) {
+    if (!set_conf_result || payload.size() < 4) {
+        return;
+    }
+    const auto type = static_cast<protocol::ConfType>(protocol::load_le32(payload.first<4>()));
+    if (*set_conf_result == 0 && keeps_conf) {
+        conf[{type, 0}] = {payload.begin() + 4, payload.end()};
+    }
+    std::vector<std::uint8_t> answer(payload.begin(), payload.begin() + 4);
+    const auto result = le(*set_conf_result, 4);
+    answer.insert(answer.end(), result.begin(), result.end());
+    reply(protocol::ReplyType::set_lidar_conf, answer);
+}
+
 void FakeScanner::send_turn() {
     for (unsigned degree = 0; degree < 360; ++degree) {
         send_sample(degree);
@@ -129,6 +143,8 @@ void FakeScanner::obey(const protocol::Request& request) {
         return reply(protocol::ReplyType::health, protocol::encode_health(health));
     case protocol::Command::get_lidar_conf:
         return answer_conf(request);
+    case protocol::Command::set_lidar_conf:
+        return set_conf(request.payload);
     case protocol::Command::get_acc_board_flag:
         if (board) {
             reply(protocol::ReplyType::acc_board_flag, protocol::encode_acc_board_flag(*board));

@@ -46,6 +46,9 @@ public:
     /// Old firmware does not answer GET_LIDAR_CONF at all, nor GET_SAMPLERATE.
     bool knows_conf{true};
     bool knows_sample_rate{true};
+    /// What it says to SET_LIDAR_CONF (0: done; none: nothing), and whether it keeps what was set.
+    std::optional<std::uint32_t> set_conf_result{0};
+    bool keeps_conf{true};
     /// The accessory board; none: GET_ACC_BOARD_FLAG is not answered.
     std::optional<protocol::AccessoryBoard> board;
     /// The only line speed that it understands.
@@ -66,6 +69,7 @@ private:
     void understand(std::span<const std::uint8_t> bytes);
     void measure_speed(std::span<const std::uint8_t> bytes);
     void answer_conf(const protocol::Request& request);
+    void set_conf(std::span<const std::uint8_t> payload);
     void list_mode(
         std::uint16_t id,
         std::string_view name,
