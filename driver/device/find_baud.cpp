@@ -30,20 +30,6 @@ bool is_silence(const error_code& failure) {
     return failure == errc::no_answer || failure.category() == protocol::protocol_category();
 }
 
-asio::awaitable<Result<protocol::DeviceInfo>> ask_at_present_speed(Conversation& talk) {
-    const auto silent = co_await talk.silence();
-    if (!silent) {
-        co_return silent.error();
-    }
-    co_return co_await ask_for<protocol::DeviceInfo>(
-        talk,
-        {protocol::Command::get_info, {}},
-        protocol::Expectation::device_info(),
-        protocol::decode_device_info,
-        patience_at_a_speed
-    );
-}
-
 /// Sends what the lidar measures the speed by until it says what it measured; 0 if it does not.
 asio::awaitable<Result<std::uint32_t>> let_it_measure(Conversation& talk) {
     std::array<std::uint8_t, block_size> block{};
@@ -99,7 +85,7 @@ std::vector<std::uint32_t> bauds_to_try(std::span<const std::uint32_t> hints) {
 
 asio::awaitable<Result<Found>> find_baud(Conversation& talk, std::span<const std::uint32_t> bauds) {
     if (talk.link().is_network()) {
-        const auto info = co_await ask_at_present_speed(talk);
+        const auto info = co_await ask_info(talk, patience_at_a_speed);
         if (!info) {
             co_return info.error();
         }
@@ -114,7 +100,7 @@ asio::awaitable<Result<Found>> find_baud(Conversation& talk, std::span<const std
         if (!set) {
             co_return set.error();
         }
-        const auto info = co_await ask_at_present_speed(talk);
+        const auto info = co_await ask_info(talk, patience_at_a_speed);
         if (info) {
             co_return Found{baud, *info};
         }

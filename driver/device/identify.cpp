@@ -96,7 +96,7 @@ asio::awaitable<Result<MotorTraits>> ask_rotation(Conversation& talk, MotorTrait
 
 }  // namespace
 
-asio::awaitable<Result<protocol::DeviceInfo>> ask_info(Conversation& talk) {
+asio::awaitable<Result<protocol::DeviceInfo>> ask_info(Conversation& talk, Patience patience) {
     const auto silent = co_await talk.silence();
     if (!silent) {
         co_return silent.error();
@@ -105,7 +105,8 @@ asio::awaitable<Result<protocol::DeviceInfo>> ask_info(Conversation& talk) {
         talk,
         {protocol::Command::get_info, {}},
         protocol::Expectation::device_info(),
-        protocol::decode_device_info
+        protocol::decode_device_info,
+        patience
     );
 }
 

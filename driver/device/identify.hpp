@@ -1,6 +1,7 @@
 // Asks a device who and how it is, and what it can do.
 #pragma once
 
+#include "driver/device/ask.hpp"
 #include "driver/device/conversation.hpp"
 #include "driver/device/motor_traits.hpp"
 #include "driver/device/scan_mode.hpp"
@@ -30,7 +31,8 @@ boost::asio::awaitable<Result<Identity>> identify(Conversation& talk);
 
 /// Asks for the info alone, after STOP: is a lidar there, and which?
 /// Errors: errc::no_answer; those of the link.
-boost::asio::awaitable<Result<protocol::DeviceInfo>> ask_info(Conversation& talk);
+boost::asio::awaitable<Result<protocol::DeviceInfo>>
+ask_info(Conversation& talk, Patience patience = patience_for_answers);
 
 /// Asks for the health alone: is the lidar still there, and well?
 /// Errors: errc::no_answer; those of the link.

@@ -12,61 +12,79 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
+#include <utility>
 
 namespace sweepcast::api {
 
 namespace asio = boost::asio;
 
 struct Api::Route {
-    const char* method;
-    const char* before_id;
-    const char* after_id;  ///< null: the path has no id
+    std::string_view method;
+    std::string_view path;
     Handler handler;
 };
 
+struct Api::LidarRoute {
+    std::string_view method;
+    std::string_view after_id;
+    LidarHandler handler;
+};
+
 const Api::Route Api::routes[] = {
-    {"GET", "/healthz", nullptr, &Api::healthz},
-    {"GET", "/api/v1/lidars", nullptr, &Api::list_lidars},
-    {"GET", "/api/v1/lidars/", "", &Api::get_lidar},
-    {"GET", "/api/v1/lidars/", "/scan", &Api::latest_scan},
-    {"GET", "/api/v1/lidars/", "/diagnosis", &Api::diagnosis},
-    {"PATCH", "/api/v1/lidars/", "", &Api::update},
-    {"POST", "/api/v1/lidars/", "/start", &Api::start},
-    {"POST", "/api/v1/lidars/", "/stop", &Api::stop},
-    {"POST", "/api/v1/lidars/", "/reset", &Api::reset},
+    {"GET", "/healthz", &Api::healthz},
+    {"GET", "/api/v1/lidars", &Api::list_lidars},
+};
+
+/// Below /api/v1/lidars/ID.
+const Api::LidarRoute Api::lidar_routes[] = {
+    {"GET", "", &Api::get_lidar},
+    {"GET", "/scan", &Api::latest_scan},
+    {"GET", "/diagnosis", &Api::diagnosis},
+    {"PATCH", "", &Api::update},
+    {"POST", "/start", &Api::start},
+    {"POST", "/stop", &Api::stop},
+    {"POST", "/reset", &Api::reset},
 };
 
 namespace {
 
-/// The id in `path` if it is before_id + id + after_id; an empty string for a path without one.
-std::optional<std::string>
-match(std::string_view path, const char* before_id, const char* after_id) {
-    if (after_id == nullptr) {
-        return path == before_id ? std::optional<std::string>("") : std::nullopt;
-    }
-    const std::string_view before = before_id;
-    const std::string_view after = after_id;
-    if (path.size() <= before.size() + after.size() || !path.starts_with(before) ||
-        !path.ends_with(after)) {
+/// What a path below a lidar's name means.
+struct LidarPath {
+    std::string id;
+    std::string after_id;  ///< with its slash; empty for the lidar itself
+};
+
+std::optional<LidarPath> parse_lidar_path(std::string_view path) {
+    constexpr std::string_view before_id = "/api/v1/lidars/";
+    if (!path.starts_with(before_id)) {
         return std::nullopt;
     }
-    const auto id = path.substr(before.size(), path.size() - before.size() - after.size());
-    return id.find('/') == std::string_view::npos ? std::optional<std::string>(id) : std::nullopt;
+    path.remove_prefix(before_id.size());
+    const auto id = path.substr(0, path.find('/'));
+    if (id.empty()) {
+        return std::nullopt;
+    }
+    return LidarPath{std::string(id), std::string(path.substr(id.size()))};
 }
+
+/// The methods that a path knows, as the header Allow lists them.
+class Allowed {
+public:
+    void add(std::string_view method) {
+        text_ += text_.empty() ? "" : ", ";
+        text_ += method == "GET" ? "GET, HEAD" : method;
+    }
+    [[nodiscard]] const std::string& text() const { return text_; }
+
+private:
+    std::string text_;
+};
 
 Response lidar_response(const hub::LidarSnapshot& lidar) {
     v1::Lidar message;
     stream::to_message(lidar, message);
     return {200, "application/json", to_json(message), {}};
-}
-
-Response lidar_not_found(const std::string& id) {
-    return error_response(
-        404,
-        "lidar_not_found",
-        fmt::format("there is no lidar \"{}\"", id),
-        "GET /api/v1/lidars lists them"
-    );
 }
 
 Response outcome_response(const LidarControl::Outcome& outcome) {
@@ -82,22 +100,29 @@ bool wants_csv(const Request& request) {
 }  // namespace
 
 asio::awaitable<Response> Api::handle(Request request) const {
-    const auto method = request.method == "HEAD" ? "GET" : request.method;
-    std::string allowed;
+    const std::string method = request.method == "HEAD" ? "GET" : request.method;
+    Allowed allowed;
     for (const auto& route : routes) {
-        const auto id = match(request.path, route.before_id, route.after_id);
-        if (!id) {
+        if (request.path != route.path) {
             continue;
         }
         if (method == route.method) {
-            co_return co_await (this->*route.handler)(request, *id);
+            co_return co_await (this->*route.handler)();
         }
-        const std::string_view also = route.method;
-        allowed += allowed.empty() ? "" : ", ";
-        allowed += also == "GET" ? "GET, HEAD" : also;
+        allowed.add(route.method);
     }
-    if (!allowed.empty()) {
-        co_return method_not_allowed(request, allowed);
+    const auto path = parse_lidar_path(request.path);
+    for (const auto& route : lidar_routes) {
+        if (!path || path->after_id != route.after_id) {
+            continue;
+        }
+        if (method == route.method) {
+            co_return co_await handle_lidar(request, path->id, route.handler);
+        }
+        allowed.add(route.method);
+    }
+    if (!allowed.text().empty()) {
+        co_return method_not_allowed(request, allowed.text());
     }
     co_return error_response(
         404,
@@ -107,7 +132,21 @@ asio::awaitable<Response> Api::handle(Request request) const {
     );
 }
 
-asio::awaitable<Response> Api::list_lidars(const Request&, const std::string&) const {
+asio::awaitable<Response>
+Api::handle_lidar(const Request& request, std::string id, LidarHandler handler) const {
+    const auto lidar = hub_.find(id);
+    if (!lidar) {
+        co_return error_response(
+            404,
+            "lidar_not_found",
+            fmt::format("there is no lidar \"{}\"", id),
+            "GET /api/v1/lidars lists them"
+        );
+    }
+    co_return co_await (this->*handler)(request, lidar);
+}
+
+asio::awaitable<Response> Api::list_lidars() const {
     v1::ListLidarsResponse message;
     for (const auto& lidar : hub_.lidars()) {
         if (lidar) {
@@ -117,16 +156,11 @@ asio::awaitable<Response> Api::list_lidars(const Request&, const std::string&) c
     co_return Response{200, "application/json", to_json(message), {}};
 }
 
-asio::awaitable<Response> Api::get_lidar(const Request&, const std::string& id) const {
-    const auto lidar = hub_.find(id);
-    co_return lidar ? lidar_response(*lidar) : lidar_not_found(id);
+asio::awaitable<Response> Api::get_lidar(const Request&, hub::LidarSnapshotPtr lidar) const {
+    co_return lidar_response(*lidar);
 }
 
-asio::awaitable<Response> Api::start(const Request& request, const std::string& id) const {
-    const auto lidar = hub_.find(id);
-    if (!lidar) {
-        co_return lidar_not_found(id);
-    }
+asio::awaitable<Response> Api::start(const Request& request, hub::LidarSnapshotPtr lidar) const {
     v1::StartRequest message;
     if (const auto parsed = from_json(request.body, message); !parsed) {
         co_return error_response(
@@ -139,27 +173,15 @@ asio::awaitable<Response> Api::start(const Request& request, const std::string& 
     co_return outcome_response(co_await control_.start(lidar->number, message.mode()));
 }
 
-asio::awaitable<Response> Api::stop(const Request&, const std::string& id) const {
-    const auto lidar = hub_.find(id);
-    if (!lidar) {
-        co_return lidar_not_found(id);
-    }
+asio::awaitable<Response> Api::stop(const Request&, hub::LidarSnapshotPtr lidar) const {
     co_return outcome_response(co_await control_.stop(lidar->number));
 }
 
-asio::awaitable<Response> Api::reset(const Request&, const std::string& id) const {
-    const auto lidar = hub_.find(id);
-    if (!lidar) {
-        co_return lidar_not_found(id);
-    }
+asio::awaitable<Response> Api::reset(const Request&, hub::LidarSnapshotPtr lidar) const {
     co_return outcome_response(co_await control_.reset(lidar->number));
 }
 
-asio::awaitable<Response> Api::update(const Request& request, const std::string& id) const {
-    const auto lidar = hub_.find(id);
-    if (!lidar) {
-        co_return lidar_not_found(id);
-    }
+asio::awaitable<Response> Api::update(const Request& request, hub::LidarSnapshotPtr lidar) const {
     v1::UpdateRequest message;
     if (const auto parsed = from_json(request.body, message); !parsed) {
         co_return error_response(
@@ -187,11 +209,8 @@ asio::awaitable<Response> Api::update(const Request& request, const std::string&
     co_return outcome_response(co_await control_.update(lidar->number, std::move(update)));
 }
 
-asio::awaitable<Response> Api::latest_scan(const Request& request, const std::string& id) const {
-    const auto lidar = hub_.find(id);
-    if (!lidar) {
-        co_return lidar_not_found(id);
-    }
+asio::awaitable<Response> Api::latest_scan(const Request& request, hub::LidarSnapshotPtr lidar)
+    const {
     const auto format = request.parameter("format");
     if (!format.empty() && format != "json" && format != "csv") {
         co_return error_response(
@@ -206,8 +225,8 @@ asio::awaitable<Response> Api::latest_scan(const Request& request, const std::st
         co_return error_response(
             404,
             "no_scan_yet",
-            fmt::format("lidar \"{}\" has not completed a sweep yet", id),
-            fmt::format("start it: POST /api/v1/lidars/{}/start", id)
+            fmt::format("lidar \"{}\" has not completed a sweep yet", lidar->id),
+            fmt::format("start it: POST /api/v1/lidars/{}/start", lidar->id)
         );
     }
     if (wants_csv(request)) {
@@ -218,11 +237,7 @@ asio::awaitable<Response> Api::latest_scan(const Request& request, const std::st
     co_return Response{200, "application/json", to_json(message), {}};
 }
 
-asio::awaitable<Response> Api::diagnosis(const Request&, const std::string& id) const {
-    const auto lidar = hub_.find(id);
-    if (!lidar) {
-        co_return lidar_not_found(id);
-    }
+asio::awaitable<Response> Api::diagnosis(const Request&, hub::LidarSnapshotPtr lidar) const {
     const auto diagnosis = co_await control_.diagnose(lidar->number);
     if (!diagnosis) {
         co_return error_response(diagnosis.error());
@@ -232,7 +247,7 @@ asio::awaitable<Response> Api::diagnosis(const Request&, const std::string& id) 
     co_return Response{200, "application/json", to_json(message), {}};
 }
 
-asio::awaitable<Response> Api::healthz(const Request&, const std::string&) const {
+asio::awaitable<Response> Api::healthz() const {
     v1::HealthzResponse message;
     message.set_status("ok");
     message.set_version(version);

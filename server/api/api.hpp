@@ -43,20 +43,27 @@ public:
     boost::asio::awaitable<Response> handle(Request request) const;
 
 private:
-    using Handler =
-        boost::asio::awaitable<Response> (Api::*)(const Request&, const std::string& id) const;
+    /// Of a lidar that exists: 404 is answered for the others.
+    using LidarHandler =
+        boost::asio::awaitable<Response> (Api::*)(const Request&, hub::LidarSnapshotPtr) const;
+    using Handler = boost::asio::awaitable<Response> (Api::*)() const;
+    struct LidarRoute;
     struct Route;
+    static const LidarRoute lidar_routes[];
     static const Route routes[];
 
-    boost::asio::awaitable<Response> list_lidars(const Request&, const std::string& id) const;
-    boost::asio::awaitable<Response> get_lidar(const Request&, const std::string& id) const;
-    boost::asio::awaitable<Response> start(const Request&, const std::string& id) const;
-    boost::asio::awaitable<Response> stop(const Request&, const std::string& id) const;
-    boost::asio::awaitable<Response> reset(const Request&, const std::string& id) const;
-    boost::asio::awaitable<Response> update(const Request&, const std::string& id) const;
-    boost::asio::awaitable<Response> latest_scan(const Request&, const std::string& id) const;
-    boost::asio::awaitable<Response> diagnosis(const Request&, const std::string& id) const;
-    boost::asio::awaitable<Response> healthz(const Request&, const std::string& id) const;
+    boost::asio::awaitable<Response>
+    handle_lidar(const Request& request, std::string id, LidarHandler handler) const;
+
+    boost::asio::awaitable<Response> list_lidars() const;
+    boost::asio::awaitable<Response> healthz() const;
+    boost::asio::awaitable<Response> get_lidar(const Request&, hub::LidarSnapshotPtr) const;
+    boost::asio::awaitable<Response> start(const Request&, hub::LidarSnapshotPtr) const;
+    boost::asio::awaitable<Response> stop(const Request&, hub::LidarSnapshotPtr) const;
+    boost::asio::awaitable<Response> reset(const Request&, hub::LidarSnapshotPtr) const;
+    boost::asio::awaitable<Response> update(const Request&, hub::LidarSnapshotPtr) const;
+    boost::asio::awaitable<Response> latest_scan(const Request&, hub::LidarSnapshotPtr) const;
+    boost::asio::awaitable<Response> diagnosis(const Request&, hub::LidarSnapshotPtr) const;
 
     const hub::LocalHub& hub_;
     LidarControl& control_;
