@@ -139,7 +139,7 @@ private:
         }
         const char* end = terminal_ ? "\x1b[K\n" : "\n";
         text += fmt::format(
-            "{:<12} {:<7} {:<15} {:<10} {:>6} {:>7} {:>7} {:>9} {:>7}{}",
+            "{:<12} {:<9} {:<15} {:<11} {:>6} {:>7} {:>7} {:>9} {:>7}{}",
             "lidar",
             "model",
             "state",
@@ -160,7 +160,7 @@ private:
 
     static std::string line(const Row& row) {
         auto text = fmt::format(
-            "{:<12} {:<7} {:<15} {:<10} {:>6.0f} {:>7} {:>7} {:>9} {:>7}",
+            "{:<12} {:<9} {:<15} {:<11} {:>6.0f} {:>7} {:>7} {:>9} {:>7}",
             row.lidar.id(),
             row.lidar.device().model(),
             v1::Lidar::State_Name(row.lidar.state()),
