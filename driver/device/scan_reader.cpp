@@ -75,22 +75,13 @@ void ScanReader::clip_range() {
 void ScanReader::account_for(std::size_t bytes) {
     line_->bytes += bytes;
     line_->samples += decoded_.samples.size();
+    protocol::LineLosses losses;
     for (const auto& event : decoded_.events) {
-        switch (event.kind) {
-        case protocol::DecodeEventKind::checksum_error:
-            line_->checksum_errors += event.count;
-            break;
-        case protocol::DecodeEventKind::bytes_skipped:
-            line_->skipped_bytes += event.count;
-            break;
-        case protocol::DecodeEventKind::packets_lost:
-            line_->lost_packets += event.count;
-            break;
-        case protocol::DecodeEventKind::encoder_reset:
-        case protocol::DecodeEventKind::scan_reset:
-            break;
-        }
+        losses.count(event);
     }
+    line_->checksum_errors += losses.checksum_errors;
+    line_->skipped_bytes += losses.skipped_bytes;
+    line_->lost_packets += losses.lost_packets;
 }
 
 }  // namespace sweepcast::device

@@ -1,6 +1,7 @@
 // Sweep: one revolution of samples, and what the line lost while it was gathered.
 #pragma once
 
+#include "driver/protocol/decoded.hpp"
 #include "driver/protocol/sample.hpp"
 
 #include <chrono>
@@ -18,6 +19,24 @@ struct LineLosses {
     std::uint64_t discarded_samples{};
     /// Packets that never came, as far as the angles tell (DecodeEventKind::packets_lost).
     std::uint64_t lost_packets{};
+
+    /// Adds the damage that a decoder tells of; restarts are none.
+    void count(const DecodeEvent& event) {
+        switch (event.kind) {
+        case DecodeEventKind::checksum_error:
+            checksum_errors += event.count;
+            break;
+        case DecodeEventKind::bytes_skipped:
+            skipped_bytes += event.count;
+            break;
+        case DecodeEventKind::packets_lost:
+            lost_packets += event.count;
+            break;
+        case DecodeEventKind::encoder_reset:
+        case DecodeEventKind::scan_reset:
+            break;
+        }
+    }
 
     LineLosses& operator+=(const LineLosses& other) {
         checksum_errors += other.checksum_errors;

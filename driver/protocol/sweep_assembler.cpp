@@ -52,21 +52,9 @@ void SweepAssembler::recycle(Sweep&& spent) {
 }
 
 void SweepAssembler::apply(const DecodeEvent& event) {
-    switch (event.kind) {
-    case DecodeEventKind::checksum_error:
-        losses_.checksum_errors += event.count;
-        break;
-    case DecodeEventKind::bytes_skipped:
-        losses_.skipped_bytes += event.count;
-        break;
-    case DecodeEventKind::packets_lost:
-        losses_.lost_packets += event.count;
-        break;
-    case DecodeEventKind::encoder_reset:
-        break;  // a scan_reset follows
-    case DecodeEventKind::scan_reset:
+    losses_.count(event);
+    if (event.kind == DecodeEventKind::scan_reset) {
         restart();
-        break;
     }
 }
 

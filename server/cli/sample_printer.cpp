@@ -9,8 +9,6 @@
 
 namespace sweepcast::cli {
 
-using protocol::DecodeEventKind;
-
 SamplePrinter::SamplePrinter(bool units)
     : units_(units)
     , text_(
@@ -23,7 +21,7 @@ error_code SamplePrinter::print(const protocol::Decoded& decoded) {
     }
     samples_ += decoded.samples.size();
     for (const auto& event : decoded.events) {
-        count(event);
+        losses_.count(event);
     }
     const bool written = std::fwrite(text_.data(), 1, text_.size(), stdout) == text_.size();
     text_.clear();
@@ -56,23 +54,6 @@ void SamplePrinter::add(const protocol::Sample& sample) {
     } else {
         const auto angle = sample.angle.raw;
         fmt::format_to(out, "{},{},{},{}\n", angle, sample.distance.raw, quality, flag);
-    }
-}
-
-void SamplePrinter::count(const protocol::DecodeEvent& event) {
-    switch (event.kind) {
-    case DecodeEventKind::checksum_error:
-        losses_.checksum_errors += event.count;
-        break;
-    case DecodeEventKind::bytes_skipped:
-        losses_.skipped_bytes += event.count;
-        break;
-    case DecodeEventKind::packets_lost:
-        losses_.lost_packets += event.count;
-        break;
-    case DecodeEventKind::encoder_reset:
-    case DecodeEventKind::scan_reset:
-        break;  // no damage
     }
 }
 

@@ -28,7 +28,6 @@ public:
 
 private:
     void add(const protocol::Sample& sample);
-    void count(const protocol::DecodeEvent& event);
 
     bool units_;
     std::string text_;
