@@ -284,6 +284,7 @@ asio::awaitable<Result<void>> Device::scan(Conversation& talk) {
     regulator_.want(wanted_.speed_hz);
     state_.rotation = regulator_.rotation();
     set_phase(Phase::starting);
+    begun_before_scan_ = begun_;
     Scan scan(talk, mode_, motor_.control, regulator_, state_.line, *this);
     const auto ended = co_await scan.run();
     regulator_.stopped();
@@ -305,16 +306,45 @@ void Device::on_first_samples() {
 
 void Device::on_revolution(protocol::Sweep sweep, protocol::AnswerType type) {
     report_scan();
-    const std::chrono::nanoseconds unix_now = std::chrono::system_clock::now().time_since_epoch();
-    const std::chrono::nanoseconds monotonic_now = Clock::now().time_since_epoch();
+    begin_sweep(sweep.begun);
     CapturedSweep captured;
     captured.sweep = std::move(sweep);
+    captured.sweep.begun = begun_;
     captured.mode = mode_.name;
     captured.answer_type = type;
     captured.sample_duration = std::chrono::round<std::chrono::microseconds>(mode_.sample_duration);
-    captured.monotonic_to_unix = unix_now - monotonic_now;
+    captured.monotonic_to_unix = monotonic_to_unix_;
     captured.sequence = ++sequence_;
     observer_.on_sweep(std::move(captured));
+}
+
+void Device::on_progress(
+    const protocol::UnfinishedSweep& sweep,
+    protocol::AnswerType type,
+    protocol::SampleTime arrival
+) {
+    begin_sweep(sweep.begun);
+    SweepProgress progress;
+    progress.sweep = {sweep.samples, begun_};
+    progress.sequence = sequence_ + 1;
+    progress.mode = mode_.name;
+    progress.answer_type = type;
+    progress.sample_duration = std::chrono::round<std::chrono::microseconds>(mode_.sample_duration);
+    progress.monotonic_to_unix = monotonic_to_unix_;
+    progress.arrival = arrival;
+    observer_.on_progress(progress);
+}
+
+/// Notes which sweep of the scan is under way; reads the clocks once for each.
+void Device::begin_sweep(std::uint64_t begun) {
+    begun += begun_before_scan_;
+    if (begun == begun_) {
+        return;
+    }
+    begun_ = begun;
+    const std::chrono::nanoseconds unix_now = std::chrono::system_clock::now().time_since_epoch();
+    const std::chrono::nanoseconds monotonic_now = Clock::now().time_since_epoch();
+    monotonic_to_unix_ = unix_now - monotonic_now;
 }
 
 /// Tells the speed and the state of the line: at once when the speed is reached or lost, else now

@@ -10,6 +10,7 @@
 #include "driver/device/identify.hpp"
 #include "driver/device/scan.hpp"
 #include "driver/device/speed_regulator.hpp"
+#include "driver/device/sweep_progress.hpp"
 #include "driver/link/link.hpp"
 #include "driver/protocol/result.hpp"
 
@@ -34,6 +35,9 @@ public:
     virtual void on_state(const DeviceState& state) = 0;
     /// A complete revolution. Its `lidar` is empty: naming lidars is the observer's business.
     virtual void on_sweep(CapturedSweep sweep) = 0;
+    /// The revolution under way, whenever the line has brought samples of it: after on_sweep() of
+    /// those that the same samples completed.
+    virtual void on_progress(const SweepProgress& progress) = 0;
 };
 
 /// Opens the device's port anew, at a line speed if it has one; called for every attempt.
@@ -147,7 +151,13 @@ private:
 
     void on_first_samples() override;
     void on_revolution(protocol::Sweep sweep, protocol::AnswerType type) override;
+    void on_progress(
+        const protocol::UnfinishedSweep& sweep,
+        protocol::AnswerType type,
+        protocol::SampleTime arrival
+    ) override;
 
+    void begin_sweep(std::uint64_t begun);
     void adopt(Identity identity);
     [[nodiscard]] std::vector<std::uint32_t> bauds() const;
     void report_scan();
@@ -172,6 +182,9 @@ private:
     SpeedRegulator regulator_{motor_};
     ScanMode mode_;  ///< of the running scan
     std::uint64_t sequence_{};
+    std::uint64_t begun_{};                         ///< sweeps, in all scans
+    std::uint64_t begun_before_scan_{};             ///< in those before the running one
+    std::chrono::nanoseconds monotonic_to_unix_{};  ///< of the sweep under way
     std::string told_failure_;  ///< the cause that the log was last told; empty once all is well
     std::string told_warning_;  ///< of the rotation
     link::Link* link_{};        ///< the open one, while there is one

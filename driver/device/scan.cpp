@@ -67,11 +67,8 @@ asio::awaitable<Result<void>> Scan::read_stream(protocol::AnswerType type) {
         }
         const auto now = Clock::now();
         finished.clear();
-        const auto samples = reader->push(
-            *bytes,
-            std::chrono::time_point_cast<std::chrono::microseconds>(now),
-            finished
-        );
+        const auto arrival = std::chrono::time_point_cast<std::chrono::microseconds>(now);
+        const auto samples = reader->push(*bytes, arrival, finished);
         if (samples > 0) {
             samples_due_ = std::max(samples_due_, now + silence_limit);
         } else if (now >= samples_due_) {  // bytes alone are no scan
@@ -90,6 +87,9 @@ asio::awaitable<Result<void>> Scan::read_stream(protocol::AnswerType type) {
         for (auto& sweep : finished) {
             regulator_.observe(sweep.period);
             observer_.on_revolution(std::move(sweep), type);
+        }
+        if (samples > 0 && !reader->unfinished().samples.empty()) {
+            observer_.on_progress(reader->unfinished(), type, arrival);
         }
         if (regulator_.setting() != told_) {
             const auto told = co_await obey_regulator();

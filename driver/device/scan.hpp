@@ -23,6 +23,13 @@ public:
     virtual void on_first_samples() = 0;
     /// A complete revolution, as the stream's descriptor has it.
     virtual void on_revolution(protocol::Sweep sweep, protocol::AnswerType type) = 0;
+    /// The revolution under way, after bytes that arrived then have brought samples and what they
+    /// completed has been told. The samples are valid during the call.
+    virtual void on_progress(
+        const protocol::UnfinishedSweep& sweep,
+        protocol::AnswerType type,
+        protocol::SampleTime arrival
+    ) = 0;
 };
 
 class Scan {

@@ -31,6 +31,9 @@ public:
         std::vector<protocol::Sweep>& finished
     );
 
+    /// The revolution under way. Valid until the next push().
+    [[nodiscard]] protocol::UnfinishedSweep unfinished() const { return assembler_.unfinished(); }
+
 private:
     ScanReader(
         protocol::Decoder decoder,

@@ -80,6 +80,8 @@ public:
             link_->interrupt();
         }
     }
+    void on_progress(const protocol::UnfinishedSweep&, protocol::AnswerType, protocol::SampleTime)
+        override {}
 
     [[nodiscard]] bool saw_samples() const { return first_samples_.has_value(); }
 

@@ -1,4 +1,4 @@
-// Sweep: one revolution of samples, and what the line lost while it was gathered.
+// Sweep: one revolution of samples, complete or under way, and what the line lost meanwhile.
 #pragma once
 
 #include "driver/protocol/decoded.hpp"
@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace sweepcast::protocol {
@@ -55,12 +56,21 @@ struct Sweep {
     std::chrono::microseconds period{};
     /// What was lost since the previous sweep was given out.
     LineLosses losses;
+    /// Counts the sweeps begun in the stream from 1, also those that were given up.
+    std::uint64_t begun{};
 
     /// Turns per second; 0 if the period is not known.
     [[nodiscard]] double rotation_hz() const {
         return period.count() > 0 ? 1e6 / static_cast<double>(period.count()) : 0.0;
     }
     bool operator==(const Sweep&) const = default;
+};
+
+/// The revolution under way. Its samples only grow until it is complete, and are then the first of
+/// the Sweep with the same `begun`; if another number begins instead, it was given up.
+struct UnfinishedSweep {
+    std::span<const Sample> samples;
+    std::uint64_t begun{};
 };
 
 }  // namespace sweepcast::protocol

@@ -144,13 +144,15 @@ void SweepAssembler::finish_sweep(const Sample& next, std::vector<Sweep>& finish
         return;
     }
     const auto period = next.time - samples_.front().time;
-    finished.push_back({std::exchange(samples_, std::exchange(spare_, {})), period, losses_});
+    finished.push_back({std::exchange(samples_, std::exchange(spare_, {})), period, losses_, begun_}
+    );
     losses_ = {};
 }
 
 /// Begins a sweep at the present position, which is counted anew from heading 0.
 void SweepAssembler::begin_sweep() {
     samples_.clear();
+    ++begun_;
     state_ = State::gathering;
     position_ = *angle_;
     mark_counts_from_ = position_ + half_turn;

@@ -52,6 +52,10 @@ public:
     /// Appends to `finished` every sweep that `decoded` completes.
     void push(const Decoded& decoded, std::vector<Sweep>& finished);
 
+    /// The revolution under way, as far as the samples pushed are sure to belong to it; empty while
+    /// there is none. Valid until the next push().
+    [[nodiscard]] UnfinishedSweep unfinished() const { return {samples_, begun_}; }
+
     /// Takes back a sweep that is no longer needed, to use its memory again.
     void recycle(Sweep&& spent);
 
@@ -79,6 +83,7 @@ private:
     std::int64_t next_zero_{};         ///< the position of the heading 0 that begins a sweep
     std::vector<Sample> samples_;      ///< of the sweep being gathered
     std::vector<Sample> spare_;        ///< memory of a spent sweep
+    std::uint64_t begun_{};            ///< sweeps
     LineLosses losses_;
 };
 

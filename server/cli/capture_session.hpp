@@ -75,6 +75,8 @@ private:
     void on_set_baud(std::uint32_t baud) override;
     void on_first_samples() override;
     void on_revolution(protocol::Sweep sweep, protocol::AnswerType type) override;
+    void on_progress(const protocol::UnfinishedSweep&, protocol::AnswerType, protocol::SampleTime)
+        override {}
 
     boost::asio::any_io_executor executor_;
     CaptureOptions options_;

@@ -125,4 +125,7 @@ void ManagedLidar::on_sweep(device::CapturedSweep sweep) {
     hub_.publish(std::move(news));
 }
 
+void ManagedLidar::on_progress(const device::SweepProgress&) {
+}  // whole sweeps are all it publishes
+
 }  // namespace sweepcast::gateway

@@ -67,6 +67,7 @@ private:
     void remember(const device::DeviceState& state);
     void claim_id(const std::optional<protocol::DeviceInfo>& info);
     void on_sweep(device::CapturedSweep sweep) override;
+    void on_progress(const device::SweepProgress& progress) override;
     boost::asio::awaitable<void> live();
 
     LidarPlace place_;

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 #include <spdlog/logger.h>
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <memory>
@@ -50,8 +51,39 @@ public:  // the tests' coroutines are lambdas, which inherit no access
         if (sweep_throws) {
             throw std::length_error("no room for a sweep");
         }
+        expect_to_complete_progress(sweep);
         sweeps.push_back(std::move(sweep));
         changed.notify();
+    }
+    void on_progress(const SweepProgress& told) override {
+        const auto& samples = told.sweep.samples;
+        EXPECT_FALSE(samples.empty());
+        EXPECT_EQ(told.sequence, sweeps.empty() ? 1 : sweeps.back().sequence + 1);
+        EXPECT_EQ(told.mode, device->state().mode);
+        if (told.sweep.begun == under_way.sweep.begun) {
+            EXPECT_GE(samples.size(), gathered.size());
+            EXPECT_EQ(told.monotonic_to_unix, under_way.monotonic_to_unix);
+        } else if (told.sequence == under_way.sequence) {
+            ++given_up;
+        }
+        gathered.assign(samples.begin(), samples.end());
+        under_way = told;
+        under_way.sweep.samples = {};
+        changed.notify();
+    }
+
+    /// A sweep goes on from what was told of it while it was under way.
+    void expect_to_complete_progress(const CapturedSweep& sweep) const {
+        if (sweep.sweep.begun != under_way.sweep.begun) {
+            return;
+        }
+        EXPECT_EQ(sweep.sequence, under_way.sequence);
+        EXPECT_EQ(sweep.monotonic_to_unix, under_way.monotonic_to_unix);
+        EXPECT_EQ(sweep.sample_duration, under_way.sample_duration);
+        EXPECT_EQ(sweep.answer_type, under_way.answer_type);
+        const auto& samples = sweep.sweep.samples;
+        ASSERT_GE(samples.size(), gathered.size());
+        EXPECT_TRUE(std::equal(gathered.begin(), gathered.end(), samples.begin()));
     }
 
     Device& make_device(DeviceOptions options = {.retry_delay = 1ms}) {
@@ -119,6 +151,9 @@ public:  // the tests' coroutines are lambdas, which inherit no access
     std::vector<Phase> phases;
     std::uint16_t told_code{};
     std::vector<CapturedSweep> sweeps;
+    SweepProgress under_way;  ///< as told last; its samples are `gathered`
+    std::vector<protocol::Sample> gathered;
+    int given_up{};
     std::optional<Problem> open_problem;
     std::exception_ptr open_throws;
     int opened{};
@@ -139,6 +174,38 @@ TEST_F(DeviceTest, IdentifiesThenScansThenDeliversSweeps) {
     EXPECT_EQ(sweeps[0].sequence, 1U);
     EXPECT_EQ(sweeps[1].sequence, 2U);
     EXPECT_EQ(sweeps[0].mode, "Express");
+}
+
+TEST_F(DeviceTest, TellsOfASweepUnderWayWhatItHasSoFar) {
+    scanner.turns_at_start = 1;
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until([&test] { return test.gathered.size() == 360; });
+        EXPECT_EQ(test.under_way.sequence, 1U);
+        EXPECT_TRUE(test.sweeps.empty());
+        for (unsigned degree = 0; degree < 100; ++degree) {
+            test.scanner.send_sample(degree);
+        }
+        co_await test.until([&test] { return test.gathered.size() == 100; });
+        EXPECT_EQ(test.under_way.sequence, 2U);
+        EXPECT_EQ(test.sweeps.size(), 1U);
+        test.scanner.send_sample(100);
+        co_await test.until([&test] { return test.gathered.size() == 101; });
+        EXPECT_EQ(test.under_way.sequence, 2U);
+    }(*this));
+    EXPECT_EQ(given_up, 0);
+}
+
+TEST_F(DeviceTest, ASweepUnderWayWhenTheScanEndsIsGivenUpAndItsNumberUsedAgain) {
+    scanner.turns_at_start = 1;
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until([&test] { return test.gathered.size() == 360; });
+        EXPECT_TRUE(co_await test.device->stop());
+        EXPECT_TRUE(co_await test.device->start(""));
+        co_await test.until([&test] { return test.given_up == 1; });
+    }(*this));
+    EXPECT_EQ(under_way.sequence, 1U);
 }
 
 TEST_F(DeviceTest, TellsWhoTheLidarIs) {
