@@ -1,5 +1,5 @@
-// The two units of the angle column: 1/23040 turn where that loses nothing, for it makes smaller
-// numbers, else 1/65536.
+// The units of the angle column: 1/23040 turn where that loses nothing, for it makes smaller
+// numbers, else 1/65536; or what a subscriber wants.
 #pragma once
 
 #include "driver/protocol/units.hpp"
@@ -27,6 +27,25 @@ constexpr std::uint32_t to_q6(protocol::AngleQ14 angle) {
 constexpr bool is_q6(protocol::AngleQ14 angle) {
     const std::uint32_t q6 = to_q6(angle);
     return q6 < q6_per_turn && from_q6(q6) == angle;
+}
+
+/// The angle in units of 1/`per_turn` turn: exact in our two units if it is one of theirs, else the
+/// nearest there is. `per_turn` is 1 to 65536.
+constexpr std::uint32_t to_units(protocol::AngleQ14 angle, std::uint32_t per_turn) {
+    if (per_turn == q6_per_turn && is_q6(angle)) {
+        return to_q6(angle);
+    }
+    const std::uint64_t scaled = std::uint64_t{angle.raw} * per_turn + q14_per_turn / 2;
+    return static_cast<std::uint32_t>(scaled / q14_per_turn % per_turn);
+}
+
+/// The inverse of to_units(); `units` is below `per_turn`.
+constexpr protocol::AngleQ14 from_units(std::uint32_t units, std::uint32_t per_turn) {
+    if (per_turn == q6_per_turn) {
+        return from_q6(units);
+    }
+    const std::uint64_t scaled = std::uint64_t{units} * q14_per_turn + per_turn / 2;
+    return {static_cast<std::uint16_t>(scaled / per_turn % q14_per_turn)};
 }
 
 static_assert(from_q6(90 * 64).raw == 16384 && to_q6({16384}) == 90 * 64);

@@ -66,23 +66,26 @@ FrameEncoder::FrameEncoder(FrameEncoder&&) noexcept = default;
 FrameEncoder& FrameEncoder::operator=(FrameEncoder&&) noexcept = default;
 FrameEncoder::~FrameEncoder() = default;
 
-WireMessagePtr
-FrameEncoder::encode(const device::CapturedSweep& captured, Compression compression) {
+WireMessagePtr FrameEncoder::encode(const FrameContent& content, const FrameFormat& format) {
     auto& work = *workspace_;
-    to_columns(captured, work.scan);
+    to_columns(content, format, work.scan);
     auto& frame = *work.message.mutable_frame();
-    frame.set_lidar(printable(captured.lidar));
-    frame.set_sequence(captured.sequence);
-    frame.set_kind(v1::SWEEP);
-    if (compression == Compression::none) {
+    frame.Clear();
+    frame.set_lidar(printable(content.lidar));
+    frame.set_sequence(content.sequence);
+    frame.set_kind(content.kind == Kind::sector ? v1::SECTOR : v1::SWEEP);
+    frame.set_sector(content.sector);
+    frame.set_last(content.last);
+    frame.set_omitted(content.omitted);
+    serialize(work.scan, work.raw);
+    frame.set_raw_size(static_cast<std::uint32_t>(work.raw.size()));
+    auto& body = *frame.mutable_body();
+    if (format.compression == Compression::zstd) {
+        work.compress(body);
+    }
+    if (format.compression == Compression::none || body.size() >= work.raw.size()) {
         frame.set_compression(v1::NONE);
-        serialize(work.scan, *frame.mutable_body());
-        frame.set_raw_size(static_cast<std::uint32_t>(frame.body().size()));
-    } else {
-        frame.set_compression(v1::ZSTD);
-        serialize(work.scan, work.raw);
-        frame.set_raw_size(static_cast<std::uint32_t>(work.raw.size()));
-        work.compress(*frame.mutable_body());
+        body = work.raw;
     }
     return std::make_shared<const WireMessage>(work.message);
 }

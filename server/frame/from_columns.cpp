@@ -1,11 +1,14 @@
 // Columns -> samples, one function a column. Nothing in a column is believed.
 #include "server/frame/angle_units.hpp"
+#include "server/frame/distance_units.hpp"
 #include "server/frame/error.hpp"
 #include "server/frame/scan_columns.hpp"
 #include "server/frame/zigzag.hpp"
 #include "sweepcast/v1/scan.pb.h"
 
-#include <limits>
+#include <algorithm>
+#include <chrono>
+#include <ratio>
 #include <span>
 #include <utility>
 
@@ -18,27 +21,29 @@ using Samples = std::span<Sample>;
 
 constexpr std::uint32_t largest_byte = 255;
 
+bool is_left_out(const v1::Scan& scan, v1::Column column) {
+    return std::find(scan.left_out().begin(), scan.left_out().end(), column) !=
+           scan.left_out().end();
+}
+
 /// Whether every column has as many entries as `count` samples need.
 Result<void> check_lengths(const v1::Scan& scan, std::size_t count) {
     if (count > max_samples) {
         return error_code(errc::too_many_samples);
     }
-    const auto distances = static_cast<std::size_t>(scan.distance_size());
-    const auto residuals = static_cast<std::size_t>(scan.time_residual_size());
-    const std::size_t steps = count == 0 ? 0 : count - 1;
-    const bool fit = distances == count &&
+    const auto angles = static_cast<std::size_t>(scan.angle_size());
+    const bool fit = angles == count &&
                      (scan.quality().empty() || scan.quality().size() == count) &&
-                     (residuals == 0 || residuals == steps) &&
                      static_cast<std::size_t>(scan.flag_index_size()) == scan.flag_value().size();
     return fit ? Result<void>{} : error_code(errc::column_length_wrong);
 }
 
 Result<void> read_angles(const v1::Scan& scan, Samples samples) {
-    if (scan.angle_units_per_turn() != q6_per_turn && scan.angle_units_per_turn() != q14_per_turn) {
+    const std::uint32_t per_turn = scan.angle_units_per_turn();
+    if (per_turn == 0 || per_turn > q14_per_turn) {
         return error_code(errc::unit_unknown);
     }
-    const bool q6 = scan.angle_units_per_turn() == q6_per_turn;
-    const std::int64_t turn = scan.angle_units_per_turn();
+    const std::int64_t turn = per_turn;
     std::int64_t angle = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const std::int64_t step = scan.angle(static_cast<int>(i));
@@ -47,19 +52,17 @@ Result<void> read_angles(const v1::Scan& scan, Samples samples) {
         }
         angle += step;
         angle += angle < 0 ? turn : (angle >= turn ? -turn : 0);
-        const auto units = static_cast<std::uint32_t>(angle);
-        samples[i].angle =
-            q6 ? from_q6(units) : protocol::AngleQ14{static_cast<std::uint16_t>(units)};
+        samples[i].angle = from_units(static_cast<std::uint32_t>(angle), per_turn);
     }
     return {};
 }
 
 Result<void> read_distances(const v1::Scan& scan, Samples samples) {
-    if (scan.distance_unit_um() != 1000 && scan.distance_unit_um() != 250) {
+    const std::uint32_t unit_um = scan.distance_unit_um();
+    if (unit_um == 0 || unit_um > coarsest_um) {
         return error_code(errc::unit_unknown);
     }
-    const std::int64_t scale = scan.distance_unit_um() / 250;
-    const std::int64_t farthest = std::numeric_limits<std::uint32_t>::max() / scale;
+    const auto farthest = static_cast<std::int64_t>(farthest_in(unit_um));
     std::int64_t distance = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const std::uint64_t token = scan.distance(static_cast<int>(i));
@@ -73,7 +76,7 @@ Result<void> read_distances(const v1::Scan& scan, Samples samples) {
             return error_code(errc::distance_out_of_range);
         }
         distance += step;
-        samples[i].distance.raw = static_cast<std::uint32_t>(distance * scale);
+        samples[i].distance = distance_from_units(static_cast<std::uint64_t>(distance), unit_um);
     }
     return {};
 }
@@ -112,35 +115,58 @@ Result<void> read_flags(const v1::Scan& scan, Samples samples) {
     return {};
 }
 
-/// Any time is one that a sample can have: steps count modulo 2^64, as they were made.
-void read_times(const v1::Scan& scan, Samples samples) {
-    std::uint64_t time = scan.first_monotonic_us();
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        if (i > 0) {
-            time += scan.sample_period_us();
-            if (scan.time_residual_size() > 0) {
-                time += static_cast<std::uint64_t>(scan.time_residual(static_cast<int>(i - 1)));
-            }
+/// Whether the steps of the time column are for as many samples as there are.
+bool steps_fit(const v1::Scan& scan, std::size_t samples) {
+    std::uint64_t in_runs = 0;
+    for (const auto count : scan.time_run()) {
+        if (count == 0) {
+            return false;
         }
-        samples[i].time =
-            protocol::SampleTime(std::chrono::microseconds(static_cast<std::int64_t>(time)));
+        in_runs += count;  // of at most 2^31 entries of 32 bits
     }
+    const std::size_t wanted = is_left_out(scan, v1::TIME) ? 0 : samples;
+    return scan.time_step_ps_size() == scan.time_run_size() && in_runs == wanted;
+}
+
+/// Any time is one that a sample can have: sums are modulo 2^64.
+Result<void> read_times(const v1::Scan& scan, Samples samples) {
+    if (!steps_fit(scan, samples.size())) {
+        return error_code(errc::column_length_wrong);
+    }
+    const auto first_ns =
+        std::chrono::nanoseconds(static_cast<std::int64_t>(scan.first_monotonic_ns()));
+    const protocol::SampleTime first(std::chrono::floor<std::chrono::microseconds>(first_ns));
+    auto to_time = [first](std::uint64_t ps) {
+        const std::chrono::duration<std::int64_t, std::pico> after(static_cast<std::int64_t>(ps));
+        return first + std::chrono::floor<std::chrono::microseconds>(after);
+    };
+    std::uint64_t ps = 0;
+    std::size_t i = 0;
+    for (int run = 0; run < scan.time_run_size(); ++run) {
+        for (std::uint32_t k = 0; k < scan.time_run(run); ++k, ++i) {
+            ps += static_cast<std::uint64_t>(scan.time_step_ps(run));
+            samples[i].time = to_time(ps);
+        }
+    }
+    for (; i < samples.size(); ++i) {  // left out
+        samples[i].time = to_time(std::uint64_t{scan.sample_period_ns()} * 1000 * i);
+    }
+    return {};
 }
 
 Result<void> read_samples(const v1::Scan& scan, Samples samples) {
-    for (const auto read : {read_angles, read_distances, read_qualities, read_flags}) {
+    for (const auto read : {read_distances, read_angles, read_qualities, read_flags, read_times}) {
         if (auto done = read(scan, samples); !done) {
             return done;
         }
     }
-    read_times(scan, samples);
     return {};
 }
 
 }  // namespace
 
 Result<DecodedScan> from_columns(const v1::Scan& scan) {
-    const auto count = static_cast<std::size_t>(scan.angle_size());
+    const auto count = static_cast<std::size_t>(scan.distance_size());
     if (const auto fit = check_lengths(scan, count); !fit) {
         return fit.error();
     }
@@ -161,8 +187,13 @@ Result<DecodedScan> from_columns(const v1::Scan& scan) {
         scan.lost_packets()};
     decoded.mode = scan.mode();
     decoded.answer_type = type;
-    decoded.sample_period = std::chrono::microseconds(scan.sample_period_us());
+    decoded.sample_duration = std::chrono::nanoseconds(scan.sample_period_ns());
     decoded.first_unix = std::chrono::nanoseconds(static_cast<std::int64_t>(scan.first_unix_ns()));
+    decoded.time_uncertainty = std::chrono::microseconds(scan.time_uncertainty_us());
+    decoded.clock_step = std::chrono::nanoseconds(scan.wall_clock_step_ns());
+    decoded.without_quality = is_left_out(scan, v1::QUALITY);
+    decoded.without_flags = is_left_out(scan, v1::FLAG);
+    decoded.without_times = is_left_out(scan, v1::TIME);
     return decoded;
 }
 

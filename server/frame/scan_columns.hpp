@@ -1,11 +1,11 @@
-// A sweep as the columns of a Scan message (proto/sweepcast/v1/scan.proto), and back: no sample
-// changes by a bit.
+// Samples as the columns of a Scan message (proto/sweepcast/v1/scan.proto), and back: no sample
+// changes by a bit, unless coarser units are wanted.
 #pragma once
 
-#include "driver/device/captured_sweep.hpp"
 #include "driver/protocol/answer_type.hpp"
 #include "driver/protocol/result.hpp"
 #include "driver/protocol/sweep.hpp"
+#include "server/frame/frame_content.hpp"
 
 #include <chrono>
 #include <cstddef>
@@ -23,21 +23,31 @@ constexpr std::size_t max_samples = 65536;
 
 /// A scan as its reader gets it.
 struct DecodedScan {
+    /// Exactly what was put in; with coarser units the nearest there is to it.
     protocol::Sweep sweep;
     std::string mode;
     protocol::AnswerType answer_type{protocol::AnswerType::normal};
-    /// The usual time from one sample to the next.
-    std::chrono::microseconds sample_period{};
+    /// The usual time from one sample to the next, as the lidar reports it.
+    std::chrono::nanoseconds sample_duration{};
     /// When the first sample was taken, since the UNIX epoch; 0 if not known.
     std::chrono::nanoseconds first_unix{};
+    /// How far off the times may be; 0: not known.
+    std::chrono::microseconds time_uncertainty{};
+    /// By how much the wall clock was set since the scan before; 0: it was not.
+    std::chrono::nanoseconds clock_step{};
+    /// Columns that are not there. Times are sample_duration apart then.
+    bool without_quality{};
+    bool without_flags{};
+    bool without_times{};
 };
 
-/// Puts the sweep into `scan`, whatever it held before; its memory is used again.
-/// Every sample comes back exactly. Of the rest: a period that no uint32 of microseconds holds
-/// becomes the nearest that does, a wall-clock time outside 1970..2262 becomes 0, and a mode's name
-/// keeps printable ASCII only. Throws std::length_error for more than max_samples, which no sweep
-/// assembler gives out.
-void to_columns(const device::CapturedSweep& captured, v1::Scan& scan);
+/// Puts the samples into `scan`, whatever it held before; its memory is used again.
+/// Unless `format` wants less, every sample comes back exactly. Of the rest: the time of a sample
+/// farther than farthest_us from the first becomes the farthest, a period that no uint32 of
+/// microseconds holds the nearest that does, a wall-clock time outside 1970..2262 becomes 0, and a
+/// mode's name keeps printable ASCII only. Throws std::length_error for more than max_samples,
+/// which no sweep assembler gives out.
+void to_columns(const FrameContent& content, const FrameFormat& format, v1::Scan& scan);
 
 /// Reads a scan, which is hostile: everything is checked before memory is taken for it.
 /// Errors: errc::too_many_samples, column_length_wrong, unit_unknown, angle_out_of_range,

@@ -1,7 +1,9 @@
 // Samples -> columns, one function a column.
 #include "server/frame/angle_units.hpp"
+#include "server/frame/distance_units.hpp"
 #include "server/frame/printable.hpp"
 #include "server/frame/scan_columns.hpp"
+#include "server/frame/time_runs.hpp"
 #include "server/frame/zigzag.hpp"
 #include "sweepcast/v1/scan.pb.h"
 
@@ -10,6 +12,7 @@
 #include <limits>
 #include <span>
 #include <stdexcept>
+#include <vector>
 
 namespace sweepcast::frame {
 
@@ -18,17 +21,27 @@ namespace {
 using protocol::Sample;
 using Samples = std::span<const Sample>;
 
-void write_angles(Samples samples, v1::Scan& scan) {
+std::uint32_t to_uint32(std::int64_t value) {
+    constexpr std::int64_t most = std::numeric_limits<std::uint32_t>::max();
+    return static_cast<std::uint32_t>(std::clamp<std::int64_t>(value, 0, most));
+}
+
+std::uint32_t angle_units(Samples samples) {
     const bool q6 =
         std::all_of(samples.begin(), samples.end(), [](const Sample& s) { return is_q6(s.angle); });
-    const auto turn = static_cast<std::int32_t>(q6 ? q6_per_turn : q14_per_turn);
-    scan.set_angle_units_per_turn(static_cast<std::uint32_t>(turn));
+    return q6 ? q6_per_turn : q14_per_turn;
+}
+
+void write_angles(Samples samples, std::uint32_t wanted_units, v1::Scan& scan) {
+    const std::uint32_t per_turn = wanted_units > 0 ? wanted_units : angle_units(samples);
+    scan.set_angle_units_per_turn(per_turn);
+    const auto turn = static_cast<std::int32_t>(per_turn);
     auto& column = *scan.mutable_angle();
     column.Reserve(static_cast<int>(samples.size()));
     bool first = true;
     std::int32_t before = 0;
     for (const auto& sample : samples) {
-        const auto angle = static_cast<std::int32_t>(q6 ? to_q6(sample.angle) : sample.angle.raw);
+        const auto angle = static_cast<std::int32_t>(to_units(sample.angle, per_turn));
         std::int32_t step = angle - before;
         if (!first) {  // the short way around
             step -= step > turn / 2 ? turn : 0;
@@ -40,13 +53,17 @@ void write_angles(Samples samples, v1::Scan& scan) {
     }
 }
 
-void write_distances(Samples samples, v1::Scan& scan) {
+std::uint32_t distance_unit_um(Samples samples) {
     // Most modes measure whole millimetres, four of the vendor's units.
     const bool millimetres = std::all_of(samples.begin(), samples.end(), [](const Sample& s) {
         return s.distance.raw % 4 == 0;
     });
-    scan.set_distance_unit_um(millimetres ? 1000 : 250);
-    const unsigned shift = millimetres ? 2 : 0;
+    return millimetres ? um_per_mm : um_per_q2;
+}
+
+void write_distances(Samples samples, std::uint32_t wanted_unit_um, v1::Scan& scan) {
+    const std::uint32_t unit_um = wanted_unit_um > 0 ? wanted_unit_um : distance_unit_um(samples);
+    scan.set_distance_unit_um(unit_um);
     auto& column = *scan.mutable_distance();
     column.Reserve(static_cast<int>(samples.size()));
     std::int64_t before = 0;
@@ -55,7 +72,7 @@ void write_distances(Samples samples, v1::Scan& scan) {
             column.AddAlreadyReserved(0);
             continue;
         }
-        const std::int64_t distance = sample.distance.raw >> shift;
+        const auto distance = static_cast<std::int64_t>(to_units(sample.distance, unit_um));
         column.AddAlreadyReserved(zigzag(distance - before) + 1);
         before = distance;
     }
@@ -103,91 +120,69 @@ void write_flags(Samples samples, v1::Scan& scan) {
     }
 }
 
-/// From sample i-1 to sample i in microseconds, modulo 2^64, so that every pair of times has one.
-std::uint64_t time_step(Samples samples, std::size_t i) {
-    return static_cast<std::uint64_t>(samples[i].time.time_since_epoch().count()) -
-           static_cast<std::uint64_t>(samples[i - 1].time.time_since_epoch().count());
+/// A time in nanoseconds, or the first or last there is.
+std::int64_t to_ns(protocol::SampleTime time) {
+    constexpr std::int64_t last_us = std::numeric_limits<std::int64_t>::max() / 1000;
+    return std::clamp(time.time_since_epoch().count(), -last_us, last_us) * 1000;
 }
 
-std::size_t count_steps(Samples samples, std::uint64_t step) {
-    std::size_t count = 0;
-    for (std::size_t i = 1; i < samples.size(); ++i) {
-        count += time_step(samples, i) == step ? 1U : 0U;
-    }
-    return count;
-}
-
-/// The step that most samples take: the majority if there is one, else what the lidar reports. The
-/// clock of the lidar and of its report need not agree to the microsecond.
-std::uint32_t usual_step(Samples samples, std::chrono::microseconds reported) {
-    constexpr std::int64_t longest = std::numeric_limits<std::uint32_t>::max();
-    const auto reported_step =
-        static_cast<std::uint32_t>(std::clamp<std::int64_t>(reported.count(), 0, longest));
-    std::uint64_t candidate = reported_step;  // majority vote after Boyer and Moore
-    std::size_t lead = 0;
-    for (std::size_t i = 1; i < samples.size(); ++i) {
-        const std::uint64_t step = time_step(samples, i);
-        if (lead == 0) {
-            candidate = step;
-        }
-        lead = step == candidate ? lead + 1 : lead - 1;
-    }
-    if (candidate > static_cast<std::uint64_t>(longest) ||
-        count_steps(samples, candidate) <= count_steps(samples, reported_step)) {
-        return reported_step;
-    }
-    return static_cast<std::uint32_t>(candidate);
-}
-
-void write_times(Samples samples, std::chrono::microseconds reported, v1::Scan& scan) {
-    const std::uint32_t period = usual_step(samples, reported);
-    scan.set_sample_period_us(period);
-    if (samples.size() < 2 || count_steps(samples, period) == samples.size() - 1) {
-        return;
-    }
-    auto& column = *scan.mutable_time_residual();
-    column.Reserve(static_cast<int>(samples.size() - 1));
-    for (std::size_t i = 1; i < samples.size(); ++i) {
-        column.AddAlreadyReserved(static_cast<std::int64_t>(time_step(samples, i) - period));
-    }
-}
-
-std::uint64_t unix_ns(protocol::SampleTime time, std::chrono::nanoseconds monotonic_to_unix) {
+std::uint64_t unix_ns(std::int64_t monotonic_ns, std::chrono::nanoseconds monotonic_to_unix) {
     std::int64_t ns = 0;
     const bool overflows =
-        __builtin_mul_overflow(time.time_since_epoch().count(), std::int64_t{1000}, &ns) ||
-        __builtin_add_overflow(ns, std::int64_t{monotonic_to_unix.count()}, &ns);
+        __builtin_add_overflow(monotonic_ns, std::int64_t{monotonic_to_unix.count()}, &ns);
     return overflows || ns < 0 ? 0 : static_cast<std::uint64_t>(ns);
+}
+
+void write_times(const FrameContent& content, bool left_out, v1::Scan& scan) {
+    scan.set_sample_period_ns(to_uint32(content.sample_duration.count()));
+    scan.set_time_uncertainty_us(to_uint32(content.time_uncertainty.count()));
+    scan.set_wall_clock_step_ns(content.clock_step.count());
+    if (content.samples.empty()) {
+        return;
+    }
+    const std::int64_t first_ns = to_ns(content.samples.front().time);
+    scan.set_first_monotonic_ns(static_cast<std::uint64_t>(first_ns));
+    scan.set_first_unix_ns(unix_ns(first_ns, content.monotonic_to_unix));
+    if (left_out) {
+        scan.add_left_out(v1::TIME);
+    } else {
+        std::vector<TimeRun> runs;
+        to_time_runs(content.samples, runs);
+        for (const auto& run : runs) {
+            scan.add_time_run(run.count);
+            scan.add_time_step_ps(run.step_ps);
+        }
+    }
 }
 
 }  // namespace
 
-void to_columns(const device::CapturedSweep& captured, v1::Scan& scan) {
-    const Samples samples = captured.sweep.samples;
+void to_columns(const FrameContent& content, const FrameFormat& format, v1::Scan& scan) {
+    const Samples samples = content.samples;
     if (samples.size() > max_samples) {
-        throw std::length_error("a sweep of more samples than a scan can carry");
+        throw std::length_error("more samples than a scan can carry");
     }
     scan.Clear();
-    write_angles(samples, scan);
-    write_distances(samples, scan);
-    write_qualities(samples, scan);
-    write_flags(samples, scan);
-    write_times(samples, captured.sample_duration, scan);
-    if (!samples.empty()) {
-        const auto first = samples.front().time;
-        scan.set_first_unix_ns(unix_ns(first, captured.monotonic_to_unix));
-        scan.set_first_monotonic_us(static_cast<std::uint64_t>(first.time_since_epoch().count()));
+    write_angles(samples, format.angle_units_per_turn, scan);
+    write_distances(samples, format.distance_unit_um, scan);
+    if (format.leave_out_quality) {
+        scan.add_left_out(v1::QUALITY);
+    } else {
+        write_qualities(samples, scan);
     }
-    constexpr std::int64_t longest = std::numeric_limits<std::uint32_t>::max();
-    scan.set_period_us(static_cast<std::uint32_t>(
-        std::clamp<std::int64_t>(captured.sweep.period.count(), 0, longest)
-    ));
-    scan.set_mode(printable(captured.mode));
-    scan.set_answer_type(static_cast<std::uint32_t>(captured.answer_type));
-    scan.set_checksum_errors(captured.sweep.losses.checksum_errors);
-    scan.set_skipped_bytes(captured.sweep.losses.skipped_bytes);
-    scan.set_discarded_samples(captured.sweep.losses.discarded_samples);
-    scan.set_lost_packets(captured.sweep.losses.lost_packets);
+    if (format.leave_out_flags) {
+        scan.add_left_out(v1::FLAG);
+    } else {
+        write_flags(samples, scan);
+    }
+    write_times(content, format.leave_out_times, scan);
+    scan.set_period_us(to_uint32(content.period.count()));
+    scan.set_mode(printable(content.mode));
+    scan.set_answer_type(static_cast<std::uint32_t>(content.answer_type));
+    scan.set_checksum_errors(content.losses.checksum_errors);
+    scan.set_skipped_bytes(content.losses.skipped_bytes);
+    scan.set_discarded_samples(content.losses.discarded_samples);
+    scan.set_lost_packets(content.losses.lost_packets);
 }
 
 }  // namespace sweepcast::frame

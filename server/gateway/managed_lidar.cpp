@@ -118,7 +118,7 @@ void ManagedLidar::on_sweep(device::CapturedSweep sweep) {
     for (const auto compression : {frame::Compression::zstd, frame::Compression::none}) {
         if (hub_.wanted(compression)) {
             news.frames[static_cast<std::size_t>(compression)] =
-                encoder_.encode(sweep, compression);
+                encoder_.encode(frame::whole_sweep(sweep), {.compression = compression});
         }
     }
     news.sweep = std::make_shared<const device::CapturedSweep>(std::move(sweep));

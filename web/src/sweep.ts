@@ -43,7 +43,7 @@ export function sweepOf(scan: Scan): Sweep {
     samples,
     qualityMeasured: columns.qualityMeasured,
     endTurn: samples > 0 ? columns.angle[samples - 1]! / columns.angleUnitsPerTurn : 0,
-    startS: Number(scan.firstMonotonicUs) / 1e6,
+    startS: Number(scan.firstMonotonicNs) / 1e9,
     periodS: scan.periodUs / 1e6,
     mode: scan.mode,
   };

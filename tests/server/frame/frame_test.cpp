@@ -25,9 +25,9 @@ v1::Frame frame_in(const WireMessage& wire) {
 
 v1::Frame frame_of_a_room(Compression compression) {
     std::mt19937_64 random(7);  // NOLINT(cert-msc51-cpp): the same sweep in every run
-    const auto captured = sweep_of_a_room({.samples = 60, .samples_per_packet = 32}, random);
+    const auto captured = sweep_of_a_room({.samples = 60}, random);
     FrameEncoder encoder;
-    return frame_in(*encoder.encode(captured, compression));
+    return frame_in(*encoder.encode(whole_sweep(captured), {.compression = compression}));
 }
 
 class FrameTest : public testing::TestWithParam<Compression> {};
@@ -45,7 +45,8 @@ TEST_P(FrameTest, BringsBackThousandsOfRandomSweeps) {
     FrameDecoder decoder;
     for (int i = 0; i < 2000; ++i) {
         const auto captured = random_sweep(random);
-        const auto frame = frame_in(*encoder.encode(captured, GetParam()));
+        const auto frame =
+            frame_in(*encoder.encode(whole_sweep(captured), {.compression = GetParam()}));
         ASSERT_EQ(frame.lidar(), captured.lidar);
         ASSERT_EQ(frame.sequence(), captured.sequence);
         const auto decoded = decoder.decode(frame);
@@ -59,8 +60,9 @@ TEST_P(FrameTest, BringsBackTheLargestSweep) {
     device::CapturedSweep captured;
     captured.sweep.samples.resize(max_samples);
     for (auto& sample : captured.sweep.samples) {
-        sample.time =
-            protocol::SampleTime(std::chrono::microseconds(static_cast<std::int64_t>(random())));
+        sample.time = protocol::SampleTime(
+            std::chrono::microseconds(static_cast<std::int64_t>(random() >> 22U))
+        );
         sample.distance.raw = random() % 2 == 0 ? 1 : 0xFFFFFFFF;
         sample.angle.raw = static_cast<std::uint16_t>(random());
         sample.quality = static_cast<std::uint8_t>(random());
@@ -69,7 +71,10 @@ TEST_P(FrameTest, BringsBackTheLargestSweep) {
     FrameEncoder encoder;
     FrameDecoder decoder;
     EXPECT_EQ(
-        decoder.decode(frame_in(*encoder.encode(captured, GetParam()))).value().sweep,
+        decoder
+            .decode(frame_in(*encoder.encode(whole_sweep(captured), {.compression = GetParam()})))
+            .value()
+            .sweep,
         captured.sweep
     );
 }
@@ -78,10 +83,10 @@ TEST_P(FrameTest, EncodesTheSameSweepToTheSameBytes) {
     std::mt19937_64 random(7);  // NOLINT(cert-msc51-cpp): the same sweeps in every run
     FrameEncoder used;
     const auto captured = random_sweep(random);
-    (void)used.encode(random_sweep(random), Compression::zstd);
-    (void)used.encode(random_sweep(random), Compression::none);
-    const auto after_others = used.encode(captured, GetParam());
-    const auto at_first = FrameEncoder().encode(captured, GetParam());
+    (void)used.encode(whole_sweep(random_sweep(random)), {.compression = Compression::zstd});
+    (void)used.encode(whole_sweep(random_sweep(random)), {.compression = Compression::none});
+    const auto after_others = used.encode(whole_sweep(captured), {.compression = GetParam()});
+    const auto at_first = FrameEncoder().encode(whole_sweep(captured), {.compression = GetParam()});
     const auto a = after_others->delimited();
     const auto b = at_first->delimited();
     EXPECT_EQ(

@@ -25,7 +25,9 @@ v1::Scan honest_scan() {
     scan.set_flag(2);
     scan.add_flag_index(0);
     scan.set_flag_value("\x01");
-    scan.set_sample_period_us(500);
+    scan.set_sample_period_ns(500'000);
+    scan.add_time_step_ps(500'000'000);
+    scan.add_time_run(3);
     scan.set_answer_type(0x82);
     return scan;
 }
@@ -65,10 +67,25 @@ INSTANTIATE_TEST_SUITE_P(
             errc::column_length_wrong},
         Lie{"a_quality_less", [](auto& s) { s.set_quality("ab"); }, errc::column_length_wrong},
         Lie{"a_quality_more", [](auto& s) { s.set_quality("abcd"); }, errc::column_length_wrong},
-        Lie{"a_residual_for_the_first",
-            [](auto& s) { s.mutable_time_residual()->Resize(3, 0); },
+        Lie{"no_time_step", [](auto& s) { s.clear_time_step_ps(); }, errc::column_length_wrong},
+        Lie{"a_time_step_without_run",
+            [](auto& s) { s.add_time_step_ps(1); },
             errc::column_length_wrong},
-        Lie{"a_residual_less", [](auto& s) { s.add_time_residual(0); }, errc::column_length_wrong},
+        Lie{"a_run_of_nothing",
+            [](auto& s) {
+                s.add_time_step_ps(1);
+                s.add_time_run(0);
+            },
+            errc::column_length_wrong},
+        Lie{"a_run_beyond_the_samples",
+            [](auto& s) { s.set_time_run(0, 4); },
+            errc::column_length_wrong},
+        Lie{"a_run_that_ends_early",
+            [](auto& s) { s.set_time_run(0, 2); },
+            errc::column_length_wrong},
+        Lie{"times_that_are_said_to_be_left_out",
+            [](auto& s) { s.add_left_out(v1::TIME); },
+            errc::column_length_wrong},
         Lie{"a_flag_without_place",
             [](auto& s) { s.clear_flag_index(); },
             errc::column_length_wrong},
@@ -92,8 +109,8 @@ INSTANTIATE_TEST_SUITE_P(
         Lie{"angle_unit_of_zero",
             [](auto& s) { s.set_angle_units_per_turn(0); },
             errc::unit_unknown},
-        Lie{"angle_unit_of_degrees",
-            [](auto& s) { s.set_angle_units_per_turn(360); },
+        Lie{"angle_unit_finer_than_any",
+            [](auto& s) { s.set_angle_units_per_turn(65537); },
             errc::unit_unknown},
         Lie{"first_angle_negative", [](auto& s) { s.set_angle(0, -1); }, errc::angle_out_of_range},
         Lie{"first_angle_a_whole_turn",
@@ -110,8 +127,8 @@ INSTANTIATE_TEST_SUITE_P(
         Lie{"distance_unit_of_zero",
             [](auto& s) { s.set_distance_unit_um(0); },
             errc::unit_unknown},
-        Lie{"distance_unit_of_a_metre",
-            [](auto& s) { s.set_distance_unit_um(1'000'000); },
+        Lie{"distance_unit_above_a_metre",
+            [](auto& s) { s.set_distance_unit_um(1'000'001); },
             errc::unit_unknown},
         Lie{"negative_distance",
             [](auto& s) { s.set_distance(0, 2); },
@@ -121,7 +138,7 @@ INSTANTIATE_TEST_SUITE_P(
             [](auto& s) { s.set_distance(1, 2); },
             errc::distance_out_of_range},
         Lie{"distance_past_32_bits",
-            [](auto& s) { s.set_distance(1, 1 + 2 * (0xFFFFFFFFULL / 4)); },
+            [](auto& s) { s.set_distance(1, 1 + 2 * (0xFFFFFFFFULL / 4 + 1)); },
             errc::distance_out_of_range},
         Lie{"farthest_step",
             [](auto& s) { s.set_distance(2, std::numeric_limits<std::uint64_t>::max()); },
@@ -171,10 +188,11 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(HostileColumns, MayHaveAnyTimesAtAll) {
     auto scan = honest_scan();
-    scan.set_first_monotonic_us(std::numeric_limits<std::uint64_t>::max());
-    scan.set_sample_period_us(std::numeric_limits<std::uint32_t>::max());
-    scan.add_time_residual(std::numeric_limits<std::int64_t>::max());
-    scan.add_time_residual(std::numeric_limits<std::int64_t>::min());
+    scan.set_first_monotonic_ns(std::numeric_limits<std::uint64_t>::max());
+    scan.set_time_step_ps(0, std::numeric_limits<std::int64_t>::max());
+    scan.set_time_run(0, 2);
+    scan.add_time_step_ps(std::numeric_limits<std::int64_t>::min());
+    scan.add_time_run(1);
     EXPECT_TRUE(from_columns(scan).has_value());
 }
 

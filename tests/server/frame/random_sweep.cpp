@@ -100,7 +100,7 @@ void set_times(std::vector<Sample>& samples, Random& random) {
     for (auto& sample : samples) {
         switch (shape) {
         case 0:
-            time = static_cast<std::int64_t>(random());
+            time = static_cast<std::int64_t>(below(random, 1ULL << 42U));
             break;
         case 1:
             time += 500;
@@ -174,14 +174,10 @@ device::CapturedSweep sweep_of_a_room(const ScannerShape& shape, Random& random)
     constexpr std::int64_t turn_us = 100'000;
     device::CapturedSweep captured;
     const auto duration = turn_us / static_cast<std::int64_t>(shape.samples);
-    std::int64_t jitter = 0;
     for (std::size_t i = 0; i < shape.samples; ++i) {
         const double turn = static_cast<double>(i) / static_cast<double>(shape.samples);
         auto sample = measure_room(turn, shape, random);
-        if (i % shape.samples_per_packet == 0) {
-            jitter = static_cast<std::int64_t>(below(random, 40));
-        }
-        sample.time = at(86'400'000'000 + static_cast<std::int64_t>(i) * duration + jitter);
+        sample.time = at(86'400'000'000 + static_cast<std::int64_t>(i * turn_us / shape.samples));
         captured.sweep.samples.push_back(sample);
     }
     captured.sweep.samples.front().flag = 1;

@@ -15,15 +15,13 @@ device::CapturedSweep random_sweep(std::mt19937_64& random);
 /// How a scanner measures.
 struct ScannerShape {
     std::size_t samples{};              ///< a turn
-    std::size_t samples_per_packet{};   ///< samples of a packet share the jitter of its arrival
     std::uint32_t distance_step_q2{4};  ///< quarter millimetres
     bool measures_quality{};
     protocol::AnswerType answer_type{protocol::AnswerType::express};
 };
 
 /// A turn in a rectangular room with pillars: 1.5 mm of noise, 4 % of the samples without an echo,
-/// angles in 1/64 degrees corrected per sample, packets that arrive some ten microseconds early or
-/// late.
+/// angles in 1/64 degrees corrected per sample, times on a line.
 device::CapturedSweep sweep_of_a_room(const ScannerShape& shape, std::mt19937_64& random);
 
 }  // namespace sweepcast::frame

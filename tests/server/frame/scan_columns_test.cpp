@@ -1,6 +1,7 @@
 // Sweeps as columns: which columns a sweep gets, and that every sample comes back.
 #include "server/frame/scan_columns.hpp"
 
+#include "server/frame/time_runs.hpp"
 #include "sweepcast/v1/scan.pb.h"
 #include "tests/server/frame/random_sweep.hpp"
 
@@ -35,7 +36,7 @@ device::CapturedSweep sweep_of(std::vector<Sample> samples) {
 
 v1::Scan columns_of(const device::CapturedSweep& captured) {
     v1::Scan scan;
-    to_columns(captured, scan);
+    to_columns(whole_sweep(captured), {}, scan);
     return scan;
 }
 
@@ -97,45 +98,79 @@ TEST(ScanColumns, ListOnlyTheFlagsThatAreNotTheUsualOne) {
     EXPECT_EQ(scan.flag_value(), std::string("\x01\x07"));
 }
 
-TEST(ScanColumns, LeaveOutTheTimesOfAnEvenClock) {
+TEST(ScanColumns, GiveAnEvenClockOneStep) {
     auto captured = sweep_of({sample(0, 4, 1000), sample(0, 4, 1500), sample(0, 4, 2000)});
     captured.sample_duration = 499us;  // as the lidar reports it, a little wrong
     const auto scan = columns_of(captured);
-    EXPECT_EQ(scan.sample_period_us(), 500U);
-    EXPECT_THAT(scan.time_residual(), IsEmpty());
+    EXPECT_THAT(scan.time_run(), ElementsAre(1, 2));
+    EXPECT_NEAR(static_cast<double>(scan.time_step_ps(1)), 500e6, 1e6);
+    EXPECT_EQ(scan.sample_period_ns(), 499'000U);
 }
 
-TEST(ScanColumns, ListTheDeviationsOfAnUnevenClockFromItsUsualStep) {
-    auto captured =
-        sweep_of({sample(0, 4, 1000), sample(0, 4, 1500), sample(0, 4, 1900), sample(0, 4, 2400)});
-    captured.sample_duration = 499us;
-    const auto scan = columns_of(captured);
-    EXPECT_EQ(scan.sample_period_us(), 500U);
-    EXPECT_THAT(scan.time_residual(), ElementsAre(0, -100, 0));
+TEST(ScanColumns, GiveOneStepToAClockWhosePeriodIsNoWholeMicrosecond) {
+    for (const std::int64_t period_ns : {31'250, 62'997, 499'001, 999'999, 1'000'003}) {
+        std::vector<Sample> samples;
+        for (std::int64_t i = 0; i < 3200; ++i) {
+            samples.push_back(sample(0, 4, (123 + i * period_ns) / 1000));
+        }
+        const auto captured = sweep_of(samples);
+        const auto scan = columns_of(captured);
+        EXPECT_THAT(scan.time_run(), ElementsAre(1, 3199)) << period_ns;
+        EXPECT_EQ(there_and_back(captured), captured.sweep.samples) << period_ns;
+    }
 }
 
-TEST(ScanColumns, FallBackOnTheReportedStepWhereNoStepIsUsual) {
+TEST(ScanColumns, BeginANewRunWhereTheClockLeavesItsLine) {
     auto captured =
-        sweep_of({sample(0, 4, 0), sample(0, 4, 3), sample(0, 4, 10), sample(0, 4, 9010)});
-    captured.sample_duration = 7us;
-    EXPECT_EQ(columns_of(captured).sample_period_us(), 7U);
+        sweep_of({sample(0, 4, 1000), sample(0, 4, 1500), sample(0, 4, 2000), sample(0, 4, 2100)});
+    EXPECT_THAT(columns_of(captured).time_run(), ElementsAre(1, 2, 1));
+    EXPECT_EQ(there_and_back(captured), captured.sweep.samples);
+}
+
+TEST(ScanColumns, LeaveOutWhatIsNotWanted) {
+    const auto captured = sweep_of({sample(0, 4, 1000), sample(90, 8, 1500), sample(180, 4, 2000)});
+    v1::Scan scan;
+    FrameFormat format;
+    format.leave_out_quality = format.leave_out_flags = format.leave_out_times = true;
+    auto content = whole_sweep(captured);
+    content.sample_duration = 250us;
+    to_columns(content, format, scan);
+    const auto decoded = from_columns(scan).value();
+    EXPECT_TRUE(decoded.without_quality && decoded.without_flags && decoded.without_times);
+    EXPECT_EQ(decoded.sweep.samples[2].quality, 0);
+    EXPECT_EQ(decoded.sweep.samples[2].flag, 0);
+    EXPECT_EQ(decoded.sweep.samples[2].time, protocol::SampleTime(1500us));  // as reported
+    EXPECT_EQ(decoded.sweep.samples[2].distance.raw, 4U);
+}
+
+TEST(ScanColumns, RoundToTheUnitsThatAreWanted) {
+    const auto captured = sweep_of({sample(91, 1), sample(16384, 4 * 1006), sample(65500, 0)});
+    v1::Scan scan;
+    to_columns(
+        whole_sweep(captured),
+        {.angle_units_per_turn = 360, .distance_unit_um = 10'000},
+        scan
+    );
+    EXPECT_THAT(scan.angle(), ElementsAre(0, 90, -90));
+    EXPECT_THAT(scan.distance(), ElementsAre(3, 201, 0));  // an echo stays one: 10 mm, then 1010
+    const auto samples = from_columns(scan).value().sweep.samples;
+    EXPECT_EQ(samples[1].angle.raw, 16384);
+    EXPECT_EQ(samples[1].distance.millimetres(), 1010.0);
 }
 
 TEST(ScanColumns, TellWhenTheFirstSampleWasTakenOnBothClocks) {
     auto captured = sweep_of({sample(0, 4, 1000), sample(0, 4, 1500)});
     captured.monotonic_to_unix = 1'700'000'000s;
     const auto scan = columns_of(captured);
-    EXPECT_EQ(scan.first_monotonic_us(), 1000U);
+    EXPECT_EQ(scan.first_monotonic_ns(), 1'000'000U);
     EXPECT_EQ(scan.first_unix_ns(), 1'700'000'000'001'000'000U);
 }
 
 TEST(ScanColumns, TellNoWallClockTimeThatCannotBe) {
     EXPECT_EQ(columns_of(sweep_of({sample(0, 4, -1)})).first_unix_ns(), 0U);
-    EXPECT_EQ(
-        columns_of(sweep_of({sample(0, 4, std::numeric_limits<std::int64_t>::max())}))
-            .first_unix_ns(),
-        0U
-    );
+    auto captured = sweep_of({sample(0, 4, 5)});
+    captured.monotonic_to_unix = std::chrono::nanoseconds::max();
+    EXPECT_EQ(columns_of(captured).first_unix_ns(), 0U);
 }
 
 TEST(ScanColumns, KeepWhatIsKnownOfTheSweep) {
@@ -180,10 +215,11 @@ TEST(ScanColumns, BringBackEveryAngle) {
 }
 
 TEST(ScanColumns, BringBackTheLimitsOfEveryField) {
+    constexpr auto latest = farthest_us / 2;
     auto captured = sweep_of(
-        {sample(0, 0xFFFFFFFF, std::numeric_limits<std::int64_t>::max()),
-         sample(65535, 1, std::numeric_limits<std::int64_t>::min()),
-         sample(32768, 0, std::numeric_limits<std::int64_t>::max()),
+        {sample(0, 0xFFFFFFFF, latest),
+         sample(65535, 1, -latest),
+         sample(32768, 0, latest),
          sample(32767, 0xFFFFFFFC, -1)}
     );
     captured.sweep.samples[0].flag = 255;
@@ -197,7 +233,7 @@ TEST(ScanColumns, BringBackThousandsOfRandomSweeps) {
     v1::Scan scan;
     for (int i = 0; i < 5000; ++i) {
         const auto captured = random_sweep(random);
-        to_columns(captured, scan);
+        to_columns(whole_sweep(captured), {}, scan);
         v1::Scan parsed;
         ASSERT_TRUE(parsed.ParseFromString(scan.SerializeAsString()));
         const auto decoded = from_columns(parsed);
@@ -210,7 +246,7 @@ TEST(ScanColumns, BringBackThousandsOfRandomSweeps) {
 TEST(ScanColumns, RefuseASweepBeyondAnySize) {
     v1::Scan scan;
     EXPECT_THROW(
-        to_columns(sweep_of(std::vector<Sample>(max_samples + 1)), scan),
+        to_columns(whole_sweep(sweep_of(std::vector<Sample>(max_samples + 1))), {}, scan),
         std::length_error
     );
 }
