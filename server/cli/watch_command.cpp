@@ -56,7 +56,8 @@ device::CapturedSweep to_captured(frame::DecodedScan scan, const v1::Frame& from
     captured.sequence = from.sequence();
     captured.mode = scan.mode;
     captured.answer_type = scan.answer_type;
-    captured.sample_duration = scan.sample_period;
+    captured.sample_duration =
+        std::chrono::duration_cast<std::chrono::microseconds>(scan.sample_duration);
     return captured;
 }
 
@@ -106,6 +107,7 @@ private:
             return fail({{}, message.error().message(), message.error().hint()});
         case v1::ServerMessage::kClosing:
             return fail({{}, "the gateway ends the connection: " + message.closing().reason(), ""});
+        case v1::ServerMessage::kSubscribed:
         case v1::ServerMessage::MESSAGE_NOT_SET:
             return true;  // of a newer gateway: nothing for us
         }

@@ -100,7 +100,7 @@ TEST(Stream, SamplesHaveTimesOfTheirOwnThatAddUpToTheTurn) {
     }
     // Two packets whose arrivals jitter may meet in a microsecond, no more.
     EXPECT_GT(times.size(), scan.sweep.samples.size() * 95 / 100);
-    EXPECT_GT(scan.sweep.period, scan.sample_period * (scan.sweep.samples.size() / 2));
+    EXPECT_GT(scan.sweep.period, scan.sample_duration * (scan.sweep.samples.size() / 2));
     EXPECT_GT(scan.first_unix, std::chrono::seconds(1'700'000'000));
 }
 
