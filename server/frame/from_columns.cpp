@@ -1,4 +1,5 @@
 // Columns -> samples, one function a column. Nothing in a column is believed.
+#include "server/frame/angle_ramps.hpp"
 #include "server/frame/angle_units.hpp"
 #include "server/frame/distance_units.hpp"
 #include "server/frame/error.hpp"
@@ -8,9 +9,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <ratio>
 #include <span>
 #include <utility>
+#include <vector>
 
 namespace sweepcast::frame {
 
@@ -32,16 +35,85 @@ Result<void> check_lengths(const v1::Scan& scan, std::size_t count) {
         return error_code(errc::too_many_samples);
     }
     const auto angles = static_cast<std::size_t>(scan.angle_size());
-    const bool fit = angles == count &&
+    const bool fit = angles == (scan.has_ramps() ? 0 : count) &&
                      (scan.quality().empty() || scan.quality().size() == count) &&
                      static_cast<std::size_t>(scan.flag_index_size()) == scan.flag_value().size();
     return fit ? Result<void>{} : error_code(errc::column_length_wrong);
+}
+
+/// Adds up differences; nothing if a sum leaves the range that angles and corrections can have.
+std::optional<std::vector<std::int32_t>> sums_of(
+    const google::protobuf::RepeatedField<std::int32_t>& differences
+) {
+    // Far more turns than a scan can have, and far from what 32 bits hold.
+    constexpr std::int64_t farthest = 1 << 28;
+    std::vector<std::int32_t> sums;
+    sums.reserve(static_cast<std::size_t>(differences.size()));
+    std::int64_t sum = 0;
+    for (const auto difference : differences) {
+        sum += difference;
+        if (sum < -farthest || sum > farthest) {
+            return std::nullopt;
+        }
+        sums.push_back(static_cast<std::int32_t>(sum));
+    }
+    return sums;
+}
+
+Result<std::vector<AngleFix>> fixes_of(const v1::AngleRamps& message, std::size_t count) {
+    std::vector<AngleFix> fixes;
+    std::uint64_t index = 0;
+    for (int i = 0; i < message.fix_size(); ++i) {
+        const std::uint32_t step = message.fix_index(i);
+        index += step;
+        if ((step == 0 && i > 0) || index >= count) {
+            return error_code(errc::angle_out_of_range);
+        }
+        fixes.push_back({static_cast<std::uint32_t>(index), message.fix(i)});
+    }
+    return fixes;
+}
+
+Result<void> read_ramps(const v1::AngleRamps& message, Samples samples) {
+    AngleRamps ramps;
+    ramps.length = message.length();
+    ramps.skip = message.skip();
+    ramps.parallax = message.parallax();
+    if (ramps.length == 0 || ramps.length > max_samples || ramps.skip >= ramps.length) {
+        return error_code(errc::angle_out_of_range);
+    }
+    const auto corrections = static_cast<std::size_t>(message.correction_size());
+    const std::size_t ramps_begun = (ramps.skip + samples.size() + ramps.length - 1) / ramps.length;
+    const bool fit = static_cast<std::size_t>(message.start_size()) == ramps_begun + 1 &&
+                     (corrections == 0 || corrections == samples.size()) &&
+                     message.fix_size() == message.fix_index_size();
+    if (!fit) {
+        return error_code(errc::column_length_wrong);
+    }
+    auto starts = sums_of(message.start());
+    auto corrected = sums_of(message.correction());
+    if (!starts || !corrected) {
+        return error_code(errc::angle_out_of_range);
+    }
+    auto fixes = fixes_of(message, samples.size());
+    if (!fixes) {
+        return fixes.error();
+    }
+    ramps.starts = std::move(*starts);
+    ramps.corrections = std::move(*corrected);
+    ramps.fixes = std::move(*fixes);
+    apply_ramps(ramps, samples);
+    return {};
 }
 
 Result<void> read_angles(const v1::Scan& scan, Samples samples) {
     const std::uint32_t per_turn = scan.angle_units_per_turn();
     if (per_turn == 0 || per_turn > q14_per_turn) {
         return error_code(errc::unit_unknown);
+    }
+    if (scan.has_ramps()) {
+        return per_turn == q6_per_turn ? read_ramps(scan.ramps(), samples)
+                                       : Result<void>(error_code(errc::unit_unknown));
     }
     const std::int64_t turn = per_turn;
     std::int64_t angle = 0;
@@ -57,6 +129,7 @@ Result<void> read_angles(const v1::Scan& scan, Samples samples) {
     return {};
 }
 
+/// Before the angles, which may depend on them.
 Result<void> read_distances(const v1::Scan& scan, Samples samples) {
     const std::uint32_t unit_um = scan.distance_unit_um();
     if (unit_um == 0 || unit_um > coarsest_um) {

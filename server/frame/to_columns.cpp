@@ -1,4 +1,5 @@
 // Samples -> columns, one function a column.
+#include "server/frame/angle_ramps.hpp"
 #include "server/frame/angle_units.hpp"
 #include "server/frame/distance_units.hpp"
 #include "server/frame/printable.hpp"
@@ -10,8 +11,10 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <span>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace sweepcast::frame {
@@ -26,15 +29,34 @@ std::uint32_t to_uint32(std::int64_t value) {
     return static_cast<std::uint32_t>(std::clamp<std::int64_t>(value, 0, most));
 }
 
-std::uint32_t angle_units(Samples samples) {
-    const bool q6 =
-        std::all_of(samples.begin(), samples.end(), [](const Sample& s) { return is_q6(s.angle); });
-    return q6 ? q6_per_turn : q14_per_turn;
+/// Whether all angles are of 1/64 degrees.
+bool all_q6(Samples samples) {
+    return std::all_of(samples.begin(), samples.end(), [](const Sample& s) {
+        return is_q6(s.angle);
+    });
 }
 
-void write_angles(Samples samples, std::uint32_t wanted_units, v1::Scan& scan) {
-    const std::uint32_t per_turn = wanted_units > 0 ? wanted_units : angle_units(samples);
-    scan.set_angle_units_per_turn(per_turn);
+void write_ramps(const AngleRamps& ramps, v1::AngleRamps& message) {
+    message.set_length(ramps.length);
+    message.set_skip(ramps.skip);
+    message.set_parallax(ramps.parallax);
+    std::int32_t before = 0;
+    for (const auto start : ramps.starts) {
+        message.add_start(start - std::exchange(before, start));
+    }
+    before = 0;
+    message.mutable_correction()->Reserve(static_cast<int>(ramps.corrections.size()));
+    for (const auto correction : ramps.corrections) {
+        message.add_correction(correction - std::exchange(before, correction));
+    }
+    std::uint32_t index_before = 0;
+    for (const auto& fix : ramps.fixes) {
+        message.add_fix_index(fix.index - std::exchange(index_before, fix.index));
+        message.add_fix(fix.add);
+    }
+}
+
+void write_differences(Samples samples, std::uint32_t per_turn, v1::Scan& scan) {
     const auto turn = static_cast<std::int32_t>(per_turn);
     auto& column = *scan.mutable_angle();
     column.Reserve(static_cast<int>(samples.size()));
@@ -50,6 +72,21 @@ void write_angles(Samples samples, std::uint32_t wanted_units, v1::Scan& scan) {
         column.AddAlreadyReserved(step);
         before = angle;
         first = false;
+    }
+}
+
+void write_angles(const FrameContent& content, std::uint32_t wanted_units, v1::Scan& scan) {
+    if (wanted_units > 0) {
+        scan.set_angle_units_per_turn(wanted_units);
+        write_differences(content.samples, wanted_units, scan);
+        return;
+    }
+    const bool q6 = all_q6(content.samples);
+    scan.set_angle_units_per_turn(q6 ? q6_per_turn : q14_per_turn);
+    if (const auto ramps = q6 ? fit_ramps(content.samples, content.answer_type) : std::nullopt) {
+        write_ramps(*ramps, *scan.mutable_ramps());
+    } else {
+        write_differences(content.samples, scan.angle_units_per_turn(), scan);
     }
 }
 
@@ -163,7 +200,7 @@ void to_columns(const FrameContent& content, const FrameFormat& format, v1::Scan
         throw std::length_error("more samples than a scan can carry");
     }
     scan.Clear();
-    write_angles(samples, format.angle_units_per_turn, scan);
+    write_angles(content, format.angle_units_per_turn, scan);
     write_distances(samples, format.distance_unit_um, scan);
     if (format.leave_out_quality) {
         scan.add_left_out(v1::QUALITY);
