@@ -43,6 +43,8 @@ public:
             return "a scan's flag is out of range";
         case errc::answer_type_unknown:
             return "a scan's answer type is not known";
+        case errc::dictionary_unknown:
+            return "a frame is compressed with a dictionary that is not known here";
         }
         return "unknown frame error " + std::to_string(value);
     }

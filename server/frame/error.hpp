@@ -25,6 +25,7 @@ enum class errc : std::uint8_t {
     quality_out_of_range,   ///< a quality above 255
     flag_out_of_range,      ///< a flag above 255, or one for a sample that is not there
     answer_type_unknown,    ///< not one of 0x81 to 0x86
+    dictionary_unknown,     ///< compressed with a dictionary that is not ours
 };
 
 /// The category of errc, "sweepcast.frame".

@@ -1,6 +1,7 @@
 // zstd -> protobuf -> columns -> samples.
 #include "server/frame/frame_decoder.hpp"
 
+#include "server/frame/dictionary.hpp"
 #include "server/frame/error.hpp"
 #include "sweepcast/v1/scan.pb.h"
 #include "sweepcast/v1/stream.pb.h"
@@ -19,6 +20,21 @@ struct FreeContext {
     void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
 };
 
+struct FreeDictionary {
+    void operator()(ZSTD_DDict* dictionary) const { ZSTD_freeDDict(dictionary); }
+};
+
+/// Ours, digested for decompression; one for all decoders.
+const ZSTD_DDict* digested_dictionary() {
+    static const std::unique_ptr<ZSTD_DDict, FreeDictionary> dictionary(
+        ZSTD_createDDict(dictionary_bytes().data(), dictionary_bytes().size())
+    );
+    if (!dictionary) {
+        throw std::bad_alloc();
+    }
+    return dictionary.get();
+}
+
 }  // namespace
 
 struct FrameDecoder::Workspace {
@@ -29,7 +45,16 @@ struct FrameDecoder::Workspace {
     }
 
     /// The body's scan, decompressed into `raw`.
-    Result<std::string_view> decompress(const std::string& body, std::uint32_t raw_size) {
+    Result<std::string_view> decompress(const v1::Frame& frame) {
+        const auto& body = frame.body();
+        const auto raw_size = frame.raw_size();
+        if (frame.dictionary() != 0 && frame.dictionary() != dictionary_id()) {
+            return error_code(errc::dictionary_unknown);
+        }
+        ZSTD_DCtx_refDDict(
+            context.get(),
+            frame.dictionary() != 0 ? digested_dictionary() : nullptr
+        );
         const auto own_size = ZSTD_getFrameContentSize(body.data(), body.size());
         if (own_size == ZSTD_CONTENTSIZE_ERROR) {
             return error_code(errc::compression_damaged);
@@ -56,7 +81,7 @@ struct FrameDecoder::Workspace {
         }
         switch (frame.compression()) {
         case v1::ZSTD:
-            return decompress(frame.body(), frame.raw_size());
+            return decompress(frame);
         case v1::NONE:
             if (frame.body().size() != frame.raw_size()) {
                 return error_code(errc::raw_size_wrong);

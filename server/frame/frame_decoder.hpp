@@ -28,8 +28,8 @@ public:
 
     /// The scan in `frame`. The announced size is checked, against the limit and against what the
     /// compressed body says of itself, before memory is taken for it. Errors:
-    /// errc::compression_unknown, raw_size_out_of_range, raw_size_wrong, compression_damaged,
-    /// scan_malformed, and those of from_columns.
+    /// errc::compression_unknown, dictionary_unknown, raw_size_out_of_range, raw_size_wrong,
+    /// compression_damaged, scan_malformed, and those of from_columns.
     Result<DecodedScan> decode(const v1::Frame& frame);
 
 private:

@@ -1,6 +1,7 @@
 // Columns -> protobuf -> zstd.
 #include "server/frame/frame_encoder.hpp"
 
+#include "server/frame/dictionary.hpp"
 #include "server/frame/printable.hpp"
 #include "server/frame/scan_columns.hpp"
 #include "sweepcast/v1/scan.pb.h"
@@ -27,6 +28,21 @@ struct FreeContext {
     void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
 };
 
+struct FreeDictionary {
+    void operator()(ZSTD_CDict* dictionary) const { ZSTD_freeCDict(dictionary); }
+};
+
+/// Ours, digested for compression; one for all encoders.
+const ZSTD_CDict* digested_dictionary() {
+    static const std::unique_ptr<ZSTD_CDict, FreeDictionary> dictionary(
+        ZSTD_createCDict(dictionary_bytes().data(), dictionary_bytes().size(), zstd_level)
+    );
+    if (!dictionary) {
+        throw std::bad_alloc();
+    }
+    return dictionary.get();
+}
+
 void serialize(const v1::Scan& scan, std::string& out) {
     if (!scan.SerializeToString(&out)) {
         throw std::logic_error("a scan that protobuf does not serialise");
@@ -43,7 +59,8 @@ struct FrameEncoder::Workspace {
         ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, zstd_level);
     }
 
-    void compress(std::string& out) {
+    void compress(bool with_dictionary, std::string& out) {
+        ZSTD_CCtx_refCDict(context.get(), with_dictionary ? digested_dictionary() : nullptr);
         out.resize(ZSTD_compressBound(raw.size()));
         const std::size_t size =
             ZSTD_compress2(context.get(), out.data(), out.size(), raw.data(), raw.size());
@@ -81,10 +98,12 @@ WireMessagePtr FrameEncoder::encode(const FrameContent& content, const FrameForm
     frame.set_raw_size(static_cast<std::uint32_t>(work.raw.size()));
     auto& body = *frame.mutable_body();
     if (format.compression == Compression::zstd) {
-        work.compress(body);
+        work.compress(format.dictionary, body);
+        frame.set_dictionary(format.dictionary ? dictionary_id() : 0);
     }
     if (format.compression == Compression::none || body.size() >= work.raw.size()) {
         frame.set_compression(v1::NONE);
+        frame.clear_dictionary();
         body = work.raw;
     }
     return std::make_shared<const WireMessage>(work.message);

@@ -1,4 +1,5 @@
 // Frames: sweep -> bytes -> sweep, and what comes of bytes that were damaged or made up.
+#include "server/frame/dictionary.hpp"
 #include "server/frame/error.hpp"
 #include "server/frame/frame_decoder.hpp"
 #include "server/frame/frame_encoder.hpp"
@@ -136,6 +137,36 @@ TEST_P(FrameTest, RefusesASizeBeyondTheLimitWhateverTheBodySays) {
     auto frame = frame_of_a_room(GetParam());
     frame.set_raw_size(max_raw_size + 1);
     EXPECT_EQ(FrameDecoder().decode(frame).error(), errc::raw_size_out_of_range);
+}
+
+TEST(ZstdFrame, ComesBackThroughTheDictionaryAndSaysWhichItWas) {
+    std::mt19937_64 random(7);  // NOLINT(cert-msc51-cpp): the same sweep in every run
+    const auto captured = sweep_of_a_room({.samples = 60}, random);
+    const auto content = whole_sweep(captured);
+    FrameEncoder encoder;
+    const auto frame = frame_in(*encoder.encode(content, {.dictionary = true}));
+    EXPECT_EQ(frame.dictionary(), dictionary_id());
+    EXPECT_LT(frame.body().size(), frame_in(*encoder.encode(content, {})).body().size());
+    EXPECT_EQ(FrameDecoder().decode(frame).value().sweep, captured.sweep);
+}
+
+TEST(ZstdFrame, RefusesADictionaryThatIsNotOurs) {
+    std::mt19937_64 random(7);  // NOLINT(cert-msc51-cpp): the same sweep in every run
+    const auto captured = sweep_of_a_room({.samples = 60}, random);
+    auto frame = frame_in(*FrameEncoder().encode(whole_sweep(captured), {.dictionary = true}));
+    frame.set_dictionary(dictionary_id() + 1);
+    EXPECT_EQ(FrameDecoder().decode(frame).error(), errc::dictionary_unknown);
+    frame.set_dictionary(0);
+    EXPECT_EQ(FrameDecoder().decode(frame).error(), errc::compression_damaged);
+}
+
+TEST(ZstdFrame, StaysUncompressedWhereThatIsSmaller) {
+    device::CapturedSweep captured;
+    captured.sweep.samples.resize(1);
+    const auto frame = frame_in(*FrameEncoder().encode(whole_sweep(captured), {}));
+    EXPECT_EQ(frame.compression(), v1::NONE);
+    EXPECT_EQ(frame.body().size(), frame.raw_size());
+    EXPECT_EQ(FrameDecoder().decode(frame).value().sweep, captured.sweep);
 }
 
 v1::Frame zstd_frame(const std::string& raw, std::uint32_t announced) {
