@@ -258,7 +258,7 @@ private:
         }
         stream_.expires_never();  // from here on the WebSocket has deadlines of its own
         const auto transport =
-            co_await stream::accept_websocket(std::move(stream_), std::move(request));
+            co_await stream::accept_websocket(stream_.release_socket(), std::move(request));
         if (transport) {
             co_await stream::serve_subscriber(
                 **transport,

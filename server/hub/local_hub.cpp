@@ -22,9 +22,9 @@ void keep(std::vector<T>& list, std::uint32_t number, T value) {
 
 }  // namespace
 
-LocalHub::Subscription::Subscription(LocalHub& hub, Mailbox& mailbox)
+LocalHub::Subscription::Subscription(LocalHub& hub, Outbox& outbox)
     : hub_(hub)
-    , mailbox_(mailbox)
+    , outbox_(outbox)
     , place_(hub.subscriptions_.insert(hub.subscriptions_.end(), this)) {}
 
 LocalHub::Subscription::~Subscription() {
@@ -51,7 +51,7 @@ void LocalHub::deliver(const SweepNews& news) {
         }
         // Null for one who subscribed after the sweep had been encoded: the next one will be there.
         if (const auto& frame = news.frames[static_cast<std::size_t>(wish->compression)]) {
-            subscription->mailbox_.push_frame(frame);
+            subscription->outbox_.push_frame(frame);
         }
     }
 }
@@ -59,14 +59,14 @@ void LocalHub::deliver(const SweepNews& news) {
 void LocalHub::deliver(const StateNews& news) {
     keep(lidars_, news.lidar->number, news.lidar);
     for (auto* subscription : subscriptions_) {
-        subscription->mailbox_.push_control(news.message);
+        subscription->outbox_.push_control(news.message);
     }
 }
 
 void LocalHub::close_all(const frame::WireMessagePtr& farewell, const std::string& reason) {
     for (auto* subscription : subscriptions_) {
-        subscription->mailbox_.push_control(farewell);
-        subscription->mailbox_.close(reason);
+        subscription->outbox_.push_control(farewell);
+        subscription->outbox_.close(reason);
     }
 }
 

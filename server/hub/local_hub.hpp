@@ -2,7 +2,7 @@
 // subscribers, without locks.
 #pragma once
 
-#include "server/hub/mailbox.hpp"
+#include "server/hub/outbox.hpp"
 #include "server/hub/publication.hpp"
 
 #include <array>
@@ -27,10 +27,10 @@ public:
     LocalHub(const LocalHub&) = delete;
     LocalHub& operator=(const LocalHub&) = delete;
 
-    /// A place among the subscribers; leaves it when destroyed. Must not outlive hub or mailbox.
+    /// A place among the subscribers; leaves it when destroyed. Must not outlive hub or outbox.
     class Subscription {
     public:
-        Subscription(LocalHub& hub, Mailbox& mailbox);
+        Subscription(LocalHub& hub, Outbox& outbox);
         ~Subscription();
         Subscription(const Subscription&) = delete;
         Subscription& operator=(const Subscription&) = delete;
@@ -41,7 +41,7 @@ public:
     private:
         friend class LocalHub;
         LocalHub& hub_;
-        Mailbox& mailbox_;
+        Outbox& outbox_;
         std::optional<Wish> wish_;
         std::list<Subscription*>::iterator place_;
     };
@@ -50,7 +50,7 @@ public:
     void deliver(const SweepNews& news);
     /// Keeps a lidar's new state and tells every subscriber.
     void deliver(const StateNews& news);
-    /// Closes every mailbox: the reader ends after the control messages still waiting, the last of
+    /// Closes every outbox: the client gets the control messages still waiting, the last of
     /// which is `farewell`.
     void close_all(const frame::WireMessagePtr& farewell, const std::string& reason);
 

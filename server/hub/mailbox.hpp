@@ -4,14 +4,9 @@
 
 #include "server/frame/wire_message.hpp"
 
-#include <boost/asio/any_io_executor.hpp>
-#include <boost/asio/awaitable.hpp>
-#include <boost/asio/steady_timer.hpp>
-
 #include <cstddef>
 #include <cstdint>
-#include <deque>
-#include <string>
+#include <vector>
 
 namespace sweepcast::hub {
 
@@ -20,50 +15,42 @@ struct MailboxLimits {
     std::size_t frames{8};
     /// Most bytes of frames waiting; a single frame may exceed it.
     std::size_t frame_bytes{1 << 20};
-    /// Most control messages waiting; one more closes the mailbox.
+    /// Most control messages waiting.
     std::size_t controls{256};
 };
 
-struct MailboxCounts {
-    std::uint64_t frames_taken{};
-    std::uint64_t frames_dropped{};
-};
-
-/// Belongs to one worker's thread; has one reader.
+/// Holds no memory while nothing waits.
 class Mailbox {
 public:
-    Mailbox(boost::asio::any_io_executor executor, MailboxLimits limits);
+    explicit Mailbox(MailboxLimits limits) : limits_(limits) {}
 
     /// Queues a frame, dropping the oldest ones if it would not fit.
     void push_frame(frame::WireMessagePtr frame);
 
-    /// Queues a message that must not be lost; it overtakes the frames. If too many wait already,
-    /// the mailbox closes.
-    void push_control(frame::WireMessagePtr message);
+    /// Queues a message that must not be lost. False if too many wait already.
+    [[nodiscard]] bool push_control(frame::WireMessagePtr message);
 
-    /// No more comes in; the reader gets the control messages still waiting, then null. The first
-    /// reason given stays.
-    void close(std::string reason);
+    /// The next control message; null if none waits.
+    [[nodiscard]] frame::WireMessagePtr take_control() { return take(controls_); }
+    /// The next frame; null if none waits.
+    [[nodiscard]] frame::WireMessagePtr take_frame();
 
-    /// Waits for the next message, control messages first. Null once the mailbox is closed and no
-    /// control message waits.
-    boost::asio::awaitable<frame::WireMessagePtr> next();
+    /// Forgets the frames that wait; they do not count as dropped.
+    void discard_frames();
 
-    [[nodiscard]] const MailboxCounts& counts() const { return counts_; }
-    [[nodiscard]] const std::string& close_reason() const { return close_reason_; }
+    [[nodiscard]] std::uint64_t frames_dropped() const { return frames_dropped_; }
     [[nodiscard]] std::size_t waiting_bytes() const { return frame_bytes_; }
 
 private:
-    void drop_oldest();
+    // Short, and empty nearly always: a deque would keep half a kilobyte each.
+    using Queue = std::vector<frame::WireMessagePtr>;
+    static frame::WireMessagePtr take(Queue& queue);
 
     MailboxLimits limits_;
-    boost::asio::steady_timer arrived_;
-    std::deque<frame::WireMessagePtr> controls_;
-    std::deque<frame::WireMessagePtr> frames_;
+    Queue controls_;
+    Queue frames_;
     std::size_t frame_bytes_{};
-    MailboxCounts counts_;
-    bool closed_{};
-    std::string close_reason_;
+    std::uint64_t frames_dropped_{};
 };
 
 }  // namespace sweepcast::hub

@@ -58,9 +58,9 @@ frame::WireMessagePtr state_message(const hub::LidarSnapshot& lidar) {
     return wire(message);
 }
 
-frame::WireMessagePtr stats_message(const hub::MailboxCounts& counts) {
+frame::WireMessagePtr stats_message(const hub::OutboxCounts& counts) {
     v1::ServerMessage message;
-    message.mutable_stats()->set_frames_sent(counts.frames_taken);
+    message.mutable_stats()->set_frames_sent(counts.frames_sent);
     message.mutable_stats()->set_frames_dropped(counts.frames_dropped);
     return wire(message);
 }

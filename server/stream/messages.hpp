@@ -5,7 +5,7 @@
 #include "driver/protocol/result.hpp"
 #include "server/frame/wire_message.hpp"
 #include "server/hub/local_hub.hpp"
-#include "server/hub/mailbox.hpp"
+#include "server/hub/outbox.hpp"
 #include "server/hub/publication.hpp"
 
 #include <string>
@@ -29,7 +29,7 @@ struct Refusal {
 
 [[nodiscard]] frame::WireMessagePtr hello_message(const hub::LocalHub& hub);
 [[nodiscard]] frame::WireMessagePtr state_message(const hub::LidarSnapshot& lidar);
-[[nodiscard]] frame::WireMessagePtr stats_message(const hub::MailboxCounts& counts);
+[[nodiscard]] frame::WireMessagePtr stats_message(const hub::OutboxCounts& counts);
 [[nodiscard]] frame::WireMessagePtr refusal_message(const Refusal& refusal);
 [[nodiscard]] frame::WireMessagePtr closing_message(std::string_view reason);
 

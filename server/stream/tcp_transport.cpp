@@ -9,7 +9,6 @@
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <boost/asio/write.hpp>
 
 #include <array>
 #include <chrono>
@@ -37,19 +36,12 @@ using UserTimeout = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_USER_T
 
 class TcpTransport final : public Transport {
 public:
-    explicit TcpTransport(tcp::socket socket) : socket_(std::move(socket)) {
-        set_stream_options(socket_);
+    explicit TcpTransport(tcp::socket socket)
+        : outbox_(std::move(socket), frame::Framing::delimited) {
+        set_stream_options(outbox_.socket());
     }
 
-    asio::awaitable<Result<void>> send(const frame::WireMessage& message) override {
-        const auto bytes = message.delimited();
-        const auto [failed, sent] = co_await asio::async_write(
-            socket_,
-            asio::buffer(bytes.data(), bytes.size()),
-            asio::as_tuple(asio::use_awaitable)
-        );
-        co_return failed ? Result<void>(failed) : Result<void>{};
-    }
+    hub::Outbox& outbox() override { return outbox_; }
 
     asio::awaitable<Result<std::string>> receive() override {
         for (;;) {
@@ -60,8 +52,8 @@ public:
             if (*message) {
                 co_return std::string((*message)->begin(), (*message)->end());
             }
-            std::array<std::uint8_t, 1024> chunk{};
-            const auto [failed, got] = co_await socket_.async_read_some(
+            std::array<std::uint8_t, 128> chunk{};  // a Subscribe fits; every client keeps it
+            const auto [failed, got] = co_await outbox_.socket().async_read_some(
                 asio::buffer(chunk),
                 asio::as_tuple(asio::use_awaitable)
             );
@@ -75,9 +67,9 @@ public:
     asio::awaitable<void> close(const std::string&) override {
         using namespace asio::experimental::awaitable_operators;
         error_code ignored;  // the peer may have gone already
-        socket_.shutdown(tcp::socket::shutdown_send, ignored);
+        outbox_.socket().shutdown(tcp::socket::shutdown_send, ignored);
         // Closing with bytes unread would make the kernel throw away what we sent last.
-        asio::steady_timer limit(socket_.get_executor(), farewell_limit);
+        asio::steady_timer limit(outbox_.socket().get_executor(), farewell_limit);
         co_await (drain() || limit.async_wait(asio::use_awaitable));
     }
 
@@ -85,14 +77,14 @@ private:
     asio::awaitable<void> drain() {
         std::array<std::uint8_t, 1024> discarded{};
         for (error_code ended; !ended;) {
-            co_await socket_.async_read_some(
+            co_await outbox_.socket().async_read_some(
                 asio::buffer(discarded),
                 asio::redirect_error(asio::use_awaitable, ended)
             );
         }
     }
 
-    tcp::socket socket_;
+    hub::Outbox outbox_;
     frame::DelimitedReader reader_{longest_client_message};
 };
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "driver/protocol/result.hpp"
-#include "server/frame/wire_message.hpp"
+#include "server/hub/outbox.hpp"
 
 #include <boost/asio/awaitable.hpp>
 
@@ -10,14 +10,13 @@
 
 namespace sweepcast::stream {
 
-/// Used on one worker's thread; at most one send and one receive are under way, and they may
-/// overlap.
+/// Used on one worker's thread; at most one receive is under way.
 class Transport {
 public:
     virtual ~Transport() = default;
 
-    /// Sends one message. Takes as long as the client lets it, up to the transport's own limit.
-    virtual boost::asio::awaitable<Result<void>> send(const frame::WireMessage& message) = 0;
+    /// The way out to the client, framed as the transport does it. Somebody must run() it.
+    [[nodiscard]] virtual hub::Outbox& outbox() = 0;
 
     /// The next whole message from the client.
     /// Errors: the connection's end, or a message that is too long or cut.

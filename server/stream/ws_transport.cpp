@@ -1,6 +1,7 @@
 #include "server/stream/ws_transport.hpp"
 
 #include "server/stream/messages.hpp"
+#include "server/stream/outbox_stream.hpp"
 #include "server/stream/tcp_transport.hpp"
 #include "server/version.hpp"
 
@@ -23,24 +24,26 @@ using namespace std::chrono_literals;
 
 namespace {
 
-using WsStream = websocket::stream<beast::tcp_stream>;
+/// Without permessage-deflate: frames are compressed once for all, or not at all.
+using WsStream = websocket::stream<OutboxStream, false>;
 
 class WsTransport final : public Transport {
 public:
-    explicit WsTransport(beast::tcp_stream stream) : ws_(std::move(stream)) {
-        set_stream_options(ws_.next_layer().socket());
-        // A client that neither reads nor answers a ping for `idle` is cut off.
+    explicit WsTransport(asio::ip::tcp::socket socket)
+        : outbox_(std::move(socket), frame::Framing::websocket)
+        , ws_(outbox_) {
+        set_stream_options(outbox_.socket());
+        // A client that neither reads nor answers a ping is cut off. Frames do not go through Beast
+        // and so do not put the pings off: one may reach a client that has just stopped reading,
+        // and has to wait until it reads on.
         ws_.set_option(websocket::stream_base::timeout{
             .handshake_timeout = 10s,
-            .idle_timeout = 120s,
+            .idle_timeout = 180s,
             .keep_alive_pings = true});
         ws_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
             response.set(beast::http::field::server, std::string("sweepcast ") + version);
         }));
         ws_.read_message_max(longest_client_message);
-        // Without this Beast copies every message above 4 kB into pieces.
-        ws_.auto_fragment(false);
-        ws_.binary(true);
     }
 
     asio::awaitable<Result<void>> accept(
@@ -51,14 +54,7 @@ public:
         co_return failed ? Result<void>(failed) : Result<void>{};
     }
 
-    asio::awaitable<Result<void>> send(const frame::WireMessage& message) override {
-        const auto bytes = message.message();
-        const auto [failed, sent] = co_await ws_.async_write(
-            asio::buffer(bytes.data(), bytes.size()),
-            asio::as_tuple(asio::use_awaitable)
-        );
-        co_return failed ? Result<void>(failed) : Result<void>{};
-    }
+    hub::Outbox& outbox() override { return outbox_; }
 
     asio::awaitable<Result<std::string>> receive() override {
         buffer_.clear();
@@ -81,15 +77,18 @@ public:
     }
 
 private:
+    hub::Outbox outbox_;
     WsStream ws_;
     beast::flat_buffer buffer_{longest_client_message};
 };
 
 }  // namespace
 
-asio::awaitable<Result<std::unique_ptr<Transport>>>
-accept_websocket(beast::tcp_stream stream, beast::http::request<beast::http::string_body> request) {
-    auto transport = std::make_unique<WsTransport>(std::move(stream));
+asio::awaitable<Result<std::unique_ptr<Transport>>> accept_websocket(
+    asio::ip::tcp::socket socket,
+    beast::http::request<beast::http::string_body> request
+) {
+    auto transport = std::make_unique<WsTransport>(std::move(socket));
     if (auto accepted = co_await transport->accept(request); !accepted) {
         co_return accepted.error();
     }

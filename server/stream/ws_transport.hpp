@@ -5,7 +5,7 @@
 #include "server/stream/transport.hpp"
 
 #include <boost/asio/awaitable.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
 
@@ -13,10 +13,10 @@
 
 namespace sweepcast::stream {
 
-/// Answers a client's upgrade request on `stream`, which must have no deadline set.
+/// Answers a client's upgrade request on `socket`.
 /// Errors: those of the handshake.
 [[nodiscard]] boost::asio::awaitable<Result<std::unique_ptr<Transport>>> accept_websocket(
-    boost::beast::tcp_stream stream,
+    boost::asio::ip::tcp::socket socket,
     boost::beast::http::request<boost::beast::http::string_body> request
 );
 

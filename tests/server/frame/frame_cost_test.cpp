@@ -27,10 +27,10 @@ TEST_P(FrameCostTest, StaysBelowItsBound) {
     for (int i = 0; i < sweeps; ++i) {
         const auto captured = sweep_of_a_room(GetParam().shape, random);
         zstd += encoder.encode(whole_sweep(captured), {.compression = Compression::zstd})
-                    ->delimited()
+                    ->message()
                     .size();
         none += encoder.encode(whole_sweep(captured), {.compression = Compression::none})
-                    ->delimited()
+                    ->message()
                     .size();
     }
     const auto samples = static_cast<double>(sweeps * GetParam().shape.samples);

@@ -88,8 +88,8 @@ TEST_P(FrameTest, EncodesTheSameSweepToTheSameBytes) {
     (void)used.encode(whole_sweep(random_sweep(random)), {.compression = Compression::none});
     const auto after_others = used.encode(whole_sweep(captured), {.compression = GetParam()});
     const auto at_first = FrameEncoder().encode(whole_sweep(captured), {.compression = GetParam()});
-    const auto a = after_others->delimited();
-    const auto b = at_first->delimited();
+    const auto a = after_others->message();
+    const auto b = at_first->message();
     EXPECT_EQ(
         std::vector<std::uint8_t>(a.begin(), a.end()),
         std::vector<std::uint8_t>(b.begin(), b.end())

@@ -2,14 +2,23 @@
 #include "server/hub/hub.hpp"
 
 #include "driver/async/worker.hpp"
+#include "server/frame/message_framing.hpp"
+#include "tests/server/hub/socket_pair.hpp"
 #include "tests/server/hub/wire_messages.hpp"
 
+#include <boost/asio/buffer.hpp>
 #include <boost/asio/co_spawn.hpp>
+#include <boost/asio/experimental/awaitable_operators.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/use_future.hpp>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <memory>
+#include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace sweepcast::hub {
@@ -35,18 +44,37 @@ protected:
     }
     ~HubTest() override { workers.clear(); }
 
+    /// The texts of the next messages that arrive.
+    static asio::awaitable<std::vector<std::string>>
+    read_texts(asio::ip::tcp::socket& client, std::size_t count) {
+        frame::DelimitedReader reader(1U << 16U);
+        std::vector<std::string> texts;
+        std::array<std::uint8_t, 1024> chunk{};
+        const auto space = asio::buffer(chunk);
+        while (texts.size() < count) {
+            const auto got = co_await client.async_read_some(space, asio::use_awaitable);
+            reader.push(std::span(chunk).first(got));
+            for (auto next = reader.next(); next && *next; next = reader.next()) {
+                v1::ServerMessage message;
+                message.ParseFromArray((*next)->data(), static_cast<int>((*next)->size()));
+                texts.push_back(message.closing().reason());
+            }
+        }
+        co_return texts;
+    }
+
     /// Subscribes on a worker, tells so, and collects `count` messages.
     static asio::awaitable<std::vector<std::string>>
     collect(Hub& hub, std::size_t worker, std::size_t count, std::promise<void>& subscribed) {
-        Mailbox mailbox(co_await asio::this_coro::executor, {.frames = 1000});
-        LocalHub::Subscription subscription(hub.local(worker), mailbox);
+        using namespace asio::experimental::awaitable_operators;
+        auto [client, gateway] = socket_pair(co_await asio::this_coro::executor);
+        Outbox outbox(std::move(gateway), frame::Framing::delimited);
+        outbox.set_up({.frames = 1000}, nullptr);
+        LocalHub::Subscription subscription(hub.local(worker), outbox);
         subscription.set_wish(Wish{});
         subscribed.set_value();
-        std::vector<std::string> texts;
-        while (texts.size() < count) {
-            texts.push_back(text(co_await mailbox.next()));
-        }
-        co_return texts;
+        const auto ended = co_await (read_texts(client, count) || outbox.run());
+        co_return std::get<0>(ended);
     }
 
     std::vector<std::unique_ptr<async::Worker>> workers;

@@ -1,28 +1,30 @@
 // LocalHub: who gets what on one worker.
 #include "server/hub/local_hub.hpp"
 
+#include "tests/server/hub/client_end.hpp"
 #include "tests/server/hub/wire_messages.hpp"
 
-#include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/use_future.hpp>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 namespace sweepcast::hub {
 namespace {
 
 namespace asio = boost::asio;
 using frame::Compression;
+using testing::ElementsAre;
 
 class LocalHubTest : public testing::Test {
 protected:
     struct Client {
         explicit Client(LocalHubTest& test)
-            : mailbox(test.context.get_executor(), {})
-            , subscription(test.hub, mailbox) {}
-        Mailbox mailbox;
+            : end(test.context)
+            , subscription(test.hub, end.outbox) {}
+        ClientEnd end;
         LocalHub::Subscription subscription;
     };
 
@@ -43,30 +45,14 @@ protected:
         return {lidar, message("state of " + id)};
     }
 
-    /// What waits in the client's mailbox.
-    std::vector<std::string> received(Client& client) {
-        client.mailbox.close("end of test");
+    /// What has come to the client since the last call.
+    static std::vector<std::string> received(Client& client) {
+        client.end.read_all();
         std::vector<std::string> texts;
-        for (;;) {
-            auto taken = asio::co_spawn(context, client.mailbox.next(), asio::use_future);
-            context.restart();
-            context.poll();
-            const auto next = taken.get();
-            if (!next) {
-                return texts;
-            }
-            texts.push_back(text(next));
+        for (const auto& message : client.end.take()) {
+            texts.push_back(message.closing().reason());
         }
-    }
-
-    /// The next frame or control message; fails if there is none.
-    std::string next(Client& client) {
-        auto taken = asio::co_spawn(context, client.mailbox.next(), asio::use_future);
-        context.restart();
-        context.poll();
-        return taken.wait_for(std::chrono::seconds(0)) == std::future_status::ready
-                   ? text(taken.get())
-                   : "(nothing)";
+        return texts;
     }
 
     asio::io_context context;
@@ -81,24 +67,22 @@ TEST_F(LocalHubTest, DeliversToThoseWhoWantTheLidar) {
     second_only.subscription.set_wish(Wish{.lidar = 2});
     hub.deliver(sweep(1, "first"));
     hub.deliver(sweep(2, "second"));
-    EXPECT_EQ(next(all), "first zstd");
-    EXPECT_EQ(next(all), "second zstd");
-    EXPECT_EQ(next(second_only), "second zstd");
+    EXPECT_THAT(received(all), ElementsAre("first zstd", "second zstd"));
+    EXPECT_THAT(received(second_only), ElementsAre("second zstd"));
 }
 
 TEST_F(LocalHubTest, DeliversTheCompressionThatIsWanted) {
     Client client(*this);
     client.subscription.set_wish(Wish{.lidar = {}, .compression = Compression::none});
     hub.deliver(sweep(1, "sweep"));
-    EXPECT_EQ(next(client), "sweep none");
+    EXPECT_THAT(received(client), ElementsAre("sweep none"));
 }
 
 TEST_F(LocalHubTest, DeliversNoFramesWithoutAWish) {
     Client client(*this);
     hub.deliver(sweep(1, "sweep"));
     hub.deliver(state(1, "A0E1C2D3", "ttyUSB0"));
-    EXPECT_EQ(next(client), "state of A0E1C2D3");
-    EXPECT_EQ(next(client), "(nothing)");
+    EXPECT_THAT(received(client), ElementsAre("state of A0E1C2D3"));
 }
 
 TEST_F(LocalHubTest, DeliversNothingToOneWhoHasLeft) {
@@ -109,7 +93,7 @@ TEST_F(LocalHubTest, DeliversNothingToOneWhoHasLeft) {
         leaves.subscription.set_wish(Wish{});
     }
     hub.deliver(sweep(1, "sweep"));
-    EXPECT_EQ(next(stays), "sweep zstd");
+    EXPECT_THAT(received(stays), ElementsAre("sweep zstd"));
 }
 
 TEST_F(LocalHubTest, CountsTheDemandForEachCompression) {
@@ -144,8 +128,8 @@ TEST_F(LocalHubTest, KeepsTheLatestSweep) {
 TEST_F(LocalHubTest, ClosingAllSaysFarewellToEveryClient) {
     Client client(*this);
     hub.close_all(message("farewell"), "over");
-    EXPECT_EQ(received(client), std::vector<std::string>{"farewell"});
-    EXPECT_EQ(client.mailbox.close_reason(), "over");
+    EXPECT_THAT(received(client), ElementsAre("farewell"));
+    EXPECT_EQ(client.end.outbox.end_reason(), "over");
 }
 
 }  // namespace

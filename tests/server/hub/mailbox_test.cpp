@@ -1,123 +1,68 @@
-// Mailbox: bounds, order, closing.
+// Mailbox: bounds and order.
 #include "server/hub/mailbox.hpp"
 
 #include "tests/server/hub/wire_messages.hpp"
 
-#include <boost/asio/co_spawn.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/use_future.hpp>
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <future>
 #include <string>
-#include <vector>
 
 namespace sweepcast::hub {
 namespace {
 
-namespace asio = boost::asio;
-using testing::ElementsAre;
-
-class MailboxTest : public testing::Test {
-protected:
-    /// What the reader gets without waiting.
-    std::string take(Mailbox& mailbox) {
-        auto taken = asio::co_spawn(context, mailbox.next(), asio::use_future);
-        context.restart();
-        context.poll();
-        return text(taken.get());
-    }
-
-    asio::io_context context;
-};
-
-TEST_F(MailboxTest, GivesFramesInOrder) {
-    Mailbox mailbox(context.get_executor(), {});
+TEST(Mailbox, GivesFramesInOrder) {
+    Mailbox mailbox({});
     mailbox.push_frame(message("1"));
     mailbox.push_frame(message("2"));
-    EXPECT_EQ(take(mailbox), "1");
-    EXPECT_EQ(take(mailbox), "2");
-    EXPECT_EQ(mailbox.counts().frames_taken, 2U);
+    EXPECT_EQ(text(mailbox.take_frame()), "1");
+    EXPECT_EQ(text(mailbox.take_frame()), "2");
+    EXPECT_EQ(text(mailbox.take_frame()), "(none)");
 }
 
-TEST_F(MailboxTest, DropsTheOldestFrameBeyondItsNumber) {
-    Mailbox mailbox(context.get_executor(), {.frames = 2});
+TEST(Mailbox, DropsTheOldestFrameBeyondItsNumber) {
+    Mailbox mailbox({.frames = 2});
     for (const auto* name : {"1", "2", "3", "4"}) {
         mailbox.push_frame(message(name));
     }
-    EXPECT_EQ(take(mailbox), "3");
-    EXPECT_EQ(take(mailbox), "4");
-    EXPECT_EQ(mailbox.counts().frames_dropped, 2U);
+    EXPECT_EQ(text(mailbox.take_frame()), "3");
+    EXPECT_EQ(text(mailbox.take_frame()), "4");
+    EXPECT_EQ(mailbox.frames_dropped(), 2U);
 }
 
-TEST_F(MailboxTest, DropsTheOldestFramesBeyondItsBytes) {
+TEST(Mailbox, DropsTheOldestFramesBeyondItsBytes) {
     const auto big = message(std::string(100, 'x'));
-    Mailbox mailbox(
-        context.get_executor(),
-        {.frames = 100, .frame_bytes = 2 * big->delimited().size()}
-    );
+    Mailbox mailbox({.frames = 100, .frame_bytes = 2 * big->size()});
     for (int i = 0; i < 10; ++i) {
         mailbox.push_frame(big);
     }
-    EXPECT_EQ(mailbox.waiting_bytes(), 2 * big->delimited().size());
-    EXPECT_EQ(mailbox.counts().frames_dropped, 8U);
+    EXPECT_EQ(mailbox.waiting_bytes(), 2 * big->size());
+    EXPECT_EQ(mailbox.frames_dropped(), 8U);
 }
 
-TEST_F(MailboxTest, KeepsASingleFrameThatIsBiggerThanItsBytes) {
-    Mailbox mailbox(context.get_executor(), {.frames = 8, .frame_bytes = 10});
+TEST(Mailbox, KeepsASingleFrameThatIsBiggerThanItsBytes) {
+    Mailbox mailbox({.frames = 8, .frame_bytes = 10});
     mailbox.push_frame(message(std::string(100, 'x')));
-    EXPECT_EQ(take(mailbox), std::string(100, 'x'));
+    EXPECT_EQ(text(mailbox.take_frame()), std::string(100, 'x'));
+    EXPECT_EQ(mailbox.waiting_bytes(), 0U);
 }
 
-TEST_F(MailboxTest, ControlMessagesOvertakeFrames) {
-    Mailbox mailbox(context.get_executor(), {});
-    mailbox.push_frame(message("frame"));
-    mailbox.push_control(message("control"));
-    EXPECT_EQ(take(mailbox), "control");
-    EXPECT_EQ(take(mailbox), "frame");
+TEST(Mailbox, TakesAndKeepsControlMessagesUpToItsLimit) {
+    Mailbox mailbox({.controls = 2});
+    EXPECT_TRUE(mailbox.push_control(message("1")));
+    EXPECT_TRUE(mailbox.push_control(message("2")));
+    EXPECT_FALSE(mailbox.push_control(message("3")));
+    EXPECT_EQ(text(mailbox.take_control()), "1");
+    EXPECT_EQ(text(mailbox.take_control()), "2");
+    EXPECT_EQ(text(mailbox.take_control()), "(none)");
 }
 
-TEST_F(MailboxTest, ClosesWhenTooManyControlMessagesWait) {
-    Mailbox mailbox(context.get_executor(), {.controls = 2});
-    for (const auto* name : {"1", "2", "3"}) {
-        mailbox.push_control(message(name));
-    }
-    EXPECT_NE(mailbox.close_reason(), "");
-    EXPECT_EQ(take(mailbox), "1");
-    EXPECT_EQ(take(mailbox), "2");
-    EXPECT_EQ(take(mailbox), "(none)");
-}
-
-TEST_F(MailboxTest, AfterClosingGivesTheControlMessagesAndThenNothing) {
-    Mailbox mailbox(context.get_executor(), {});
-    mailbox.push_frame(message("frame"));
-    mailbox.push_control(message("farewell"));
-    mailbox.close("first reason");
-    mailbox.close("second reason");
-    mailbox.push_frame(message("late"));
-    EXPECT_EQ(take(mailbox), "farewell");
-    EXPECT_EQ(take(mailbox), "(none)");
-    EXPECT_EQ(mailbox.close_reason(), "first reason");
-}
-
-TEST_F(MailboxTest, WakesAReaderThatWaits) {
-    Mailbox mailbox(context.get_executor(), {});
-    auto taken = asio::co_spawn(context, mailbox.next(), asio::use_future);
-    context.poll();
-    EXPECT_NE(taken.wait_for(std::chrono::seconds(0)), std::future_status::ready);
-    mailbox.push_frame(message("late"));
-    context.poll();
-    EXPECT_EQ(text(taken.get()), "late");
-}
-
-TEST_F(MailboxTest, ClosingWakesAReaderThatWaits) {
-    Mailbox mailbox(context.get_executor(), {});
-    auto taken = asio::co_spawn(context, mailbox.next(), asio::use_future);
-    context.poll();
-    mailbox.close("over");
-    context.poll();
-    EXPECT_EQ(text(taken.get()), "(none)");
+TEST(Mailbox, ForgetsItsFramesWithoutCountingThem) {
+    Mailbox mailbox({});
+    mailbox.push_frame(message("1"));
+    mailbox.discard_frames();
+    EXPECT_EQ(text(mailbox.take_frame()), "(none)");
+    EXPECT_EQ(mailbox.waiting_bytes(), 0U);
+    EXPECT_EQ(mailbox.frames_dropped(), 0U);
 }
 
 }  // namespace
