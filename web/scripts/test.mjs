@@ -23,8 +23,11 @@ try {
     // The tests are not under web/, its packages are.
     nodePaths: [fileURLToPath(new URL("../node_modules", import.meta.url))],
     logLevel: "warning",
-    // Tests of the style sheet read it from here.
-    define: { WEB_SOURCES: JSON.stringify(fileURLToPath(new URL("../src", import.meta.url))) },
+    // Tests of the style sheet, and those with vectors, read them from here.
+    define: {
+      WEB_SOURCES: JSON.stringify(fileURLToPath(new URL("../src", import.meta.url))),
+      VECTORS: JSON.stringify(fileURLToPath(new URL("../../tests/vectors", import.meta.url))),
+    },
   });
   const files = readdirSync(out).map((name) => join(out, name));
   const run = spawnSync(

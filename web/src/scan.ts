@@ -1,4 +1,5 @@
 // A Scan message (scan.proto) to plain columns: the running sums, and nothing else.
+import { rampAngles } from "./angle_ramps";
 import type { Scan } from "./messages";
 
 /// One entry a sample in each column, in the order they were measured.
@@ -17,17 +18,26 @@ export interface Columns {
 
 /// Decodes a scan. Throws if its columns contradict each other.
 export function decodeScan(scan: Scan): Columns {
-  const count = scan.angle.length;
-  if (scan.distance.length !== count) throw new Error("angle and distance differ in length");
+  const count = scan.distance.length;
+  if (!scan.ramps && scan.angle.length !== count) {
+    throw new Error("angle and distance differ in length");
+  }
   if (scan.quality.length !== 0 && scan.quality.length !== count) {
-    throw new Error("angle and quality differ in length");
+    throw new Error("distance and quality differ in length");
   }
   if (scan.angleUnitsPerTurn === 0) throw new Error("no unit of angle");
   const distance = decodeDistance(scan.distance);
   const qualityMeasured = scan.quality.length === count && count > 0;
   return {
     angleUnitsPerTurn: scan.angleUnitsPerTurn,
-    angle: decodeAngle(scan.angle, scan.angleUnitsPerTurn),
+    angle: scan.ramps
+      ? rampAngles(
+          scan.ramps,
+          count,
+          scan.angleUnitsPerTurn,
+          (k) => (distance[k]! * scan.distanceUnitUm) / 250,
+        )
+      : decodeAngle(scan.angle, scan.angleUnitsPerTurn),
     distance,
     distanceUnitUm: scan.distanceUnitUm,
     quality: qualityMeasured ? scan.quality : impliedQuality(distance, scan.echoQuality),
