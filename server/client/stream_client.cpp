@@ -11,6 +11,9 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
 
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
 #include <utility>
 #include <variant>
 
@@ -22,6 +25,20 @@ using asio::ip::tcp;
 namespace {
 
 using Connected = Result<std::unique_ptr<StreamClient>>;
+
+/// A gateway may be silent for as long as its lidars are; that it is gone without a word (power,
+/// cable) shows by its not answering the system's own probes, within half a minute.
+void notice_dead_peer(tcp::socket& socket) {
+    const int handle = socket.native_handle();
+    const auto set = [handle](int level, int option, int value) {
+        (void)setsockopt(handle, level, option, &value, sizeof value);  // then it shows later
+    };
+    set(SOL_SOCKET, SO_KEEPALIVE, 1);
+    set(IPPROTO_TCP, TCP_KEEPIDLE, 10);
+    set(IPPROTO_TCP, TCP_KEEPINTVL, 5);
+    set(IPPROTO_TCP, TCP_KEEPCNT, 4);
+    set(IPPROTO_TCP, TCP_USER_TIMEOUT, 30'000);
+}
 
 asio::awaitable<Connected> open(StreamUrl url) {
     const auto executor = co_await asio::this_coro::executor;
@@ -37,6 +54,7 @@ asio::awaitable<Connected> open(StreamUrl url) {
     if (refused) {
         co_return refused;
     }
+    notice_dead_peer(socket);
     if (url.websocket) {
         co_return co_await make_ws_client(std::move(socket), std::move(url));
     }
@@ -77,6 +95,12 @@ StreamClient::connect(StreamUrl url, std::chrono::milliseconds limit) {
 asio::awaitable<Result<void>> StreamClient::subscribe(const v1::Subscribe& wish) {
     v1::ClientMessage message;
     *message.mutable_subscribe() = wish;
+    co_return co_await send(message.SerializeAsString());
+}
+
+asio::awaitable<Result<void>> StreamClient::unsubscribe() {
+    v1::ClientMessage message;
+    message.mutable_unsubscribe();
     co_return co_await send(message.SerializeAsString());
 }
 

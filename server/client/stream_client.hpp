@@ -31,10 +31,16 @@ public:
     /// Says what to get from now on.
     boost::asio::awaitable<Result<void>> subscribe(const v1::Subscribe& wish);
 
+    /// Ends the frames; states go on.
+    boost::asio::awaitable<Result<void>> unsubscribe();
+
     /// The next message; valid until the next call. Waits for as long as the gateway has nothing to
     /// say. Errors: the connection's end (boost::asio::error::eof if in good order), or bytes that
     /// are no message.
     boost::asio::awaitable<Result<const v1::ServerMessage*>> receive();
+
+    /// Ends the connection, and with it what is under way.
+    virtual void close() = 0;
 
     /// Bytes received so far, framing included.
     [[nodiscard]] std::uint64_t bytes_received() const { return bytes_received_; }

@@ -22,6 +22,11 @@ class TcpClient final : public StreamClient {
 public:
     explicit TcpClient(tcp::socket socket) : socket_(std::move(socket)) {}
 
+    void close() override {
+        error_code ignored;  // it is given up anyway
+        socket_.close(ignored);
+    }
+
 private:
     asio::awaitable<Result<void>> send(std::string message) override {
         std::vector<std::uint8_t> bytes;

@@ -32,6 +32,8 @@ public:
         co_return failed ? Result<void>(failed) : Result<void>{};
     }
 
+    void close() override { beast::get_lowest_layer(ws_).close(); }
+
 private:
     asio::awaitable<Result<void>> send(std::string message) override {
         const auto [failed, sent] =

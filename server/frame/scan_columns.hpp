@@ -2,14 +2,11 @@
 // changes by a bit, unless coarser units are wanted.
 #pragma once
 
-#include "driver/protocol/answer_type.hpp"
 #include "driver/protocol/result.hpp"
-#include "driver/protocol/sweep.hpp"
+#include "server/frame/decoded_scan.hpp"
 #include "server/frame/frame_content.hpp"
 
-#include <chrono>
 #include <cstddef>
-#include <string>
 
 namespace sweepcast::v1 {
 class Scan;
@@ -20,26 +17,6 @@ namespace sweepcast::frame {
 /// The most samples of a scan. The densest scanner takes about 3,200 a turn, and no sweep has more
 /// than 8192.
 constexpr std::size_t max_samples = 65536;
-
-/// A scan as its reader gets it.
-struct DecodedScan {
-    /// Exactly what was put in; with coarser units the nearest there is to it.
-    protocol::Sweep sweep;
-    std::string mode;
-    protocol::AnswerType answer_type{protocol::AnswerType::normal};
-    /// The usual time from one sample to the next, as the lidar reports it.
-    std::chrono::nanoseconds sample_duration{};
-    /// When the first sample was taken, since the UNIX epoch; 0 if not known.
-    std::chrono::nanoseconds first_unix{};
-    /// How far off the times may be; 0: not known.
-    std::chrono::microseconds time_uncertainty{};
-    /// By how much the wall clock was set since the scan before; 0: it was not.
-    std::chrono::nanoseconds clock_step{};
-    /// Columns that are not there. Times are sample_duration apart then.
-    bool without_quality{};
-    bool without_flags{};
-    bool without_times{};
-};
 
 /// Puts the samples into `scan`, whatever it held before; its memory is used again.
 /// Unless `format` wants less, every sample comes back exactly. Of the rest: the time of a sample
