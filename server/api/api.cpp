@@ -4,6 +4,7 @@
 #include "server/api/errors.hpp"
 #include "server/api/json.hpp"
 #include "server/api/scan_export.hpp"
+#include "server/frame/dictionary.hpp"
 #include "server/stream/lidar_message.hpp"
 #include "server/version.hpp"
 #include "sweepcast/v1/api.pb.h"
@@ -31,8 +32,19 @@ struct Api::LidarRoute {
     LidarHandler handler;
 };
 
+namespace {
+
+/// The path of the one dictionary there is.
+const std::string& dictionary_path() {
+    static const auto path = fmt::format("/api/v1/dictionaries/{}", frame::dictionary_id());
+    return path;
+}
+
+}  // namespace
+
 const Api::Route Api::routes[] = {
     {"GET", "/healthz", &Api::healthz},
+    {"GET", dictionary_path(), &Api::dictionary},
     {"GET", "/api/v1/lidars", &Api::list_lidars},
 };
 
@@ -245,6 +257,11 @@ asio::awaitable<Response> Api::diagnosis(const Request&, hub::LidarSnapshotPtr l
     v1::Diagnosis message;
     to_message(*diagnosis, message);
     co_return Response{200, "application/json", to_json(message), {}};
+}
+
+asio::awaitable<Response> Api::dictionary() const {
+    const auto bytes = frame::dictionary_bytes();
+    co_return Response{200, "application/zstd-dictionary", {bytes.begin(), bytes.end()}, {}};
 }
 
 asio::awaitable<Response> Api::healthz() const {

@@ -57,6 +57,7 @@ private:
 
     boost::asio::awaitable<Response> list_lidars() const;
     boost::asio::awaitable<Response> healthz() const;
+    boost::asio::awaitable<Response> dictionary() const;
     boost::asio::awaitable<Response> get_lidar(const Request&, hub::LidarSnapshotPtr) const;
     boost::asio::awaitable<Response> start(const Request&, hub::LidarSnapshotPtr) const;
     boost::asio::awaitable<Response> stop(const Request&, hub::LidarSnapshotPtr) const;

@@ -1,5 +1,6 @@
 #include "server/stream/messages.hpp"
 
+#include "server/frame/dictionary.hpp"
 #include "server/stream/lidar_message.hpp"
 #include "server/version.hpp"
 #include "sweepcast/v1/stream.pb.h"
@@ -49,6 +50,9 @@ frame::WireMessagePtr hello_message(const hub::LocalHub& hub) {
             to_message(*lidar, *hello.add_lidars());
         }
     }
+    auto& dictionary = *hello.add_dictionaries();
+    dictionary.set_id(frame::dictionary_id());
+    dictionary.set_size(static_cast<std::uint32_t>(frame::dictionary_bytes().size()));
     return wire(message);
 }
 

@@ -3,6 +3,7 @@
 
 #include "driver/device/advice.hpp"
 #include "driver/device/error.hpp"
+#include "server/frame/dictionary.hpp"
 #include "server/stream/messages.hpp"
 #include "sweepcast/v1/api.pb.h"
 
@@ -124,6 +125,17 @@ protected:
     RecordingControl control;
     Api api{hub, control};
 };
+
+TEST_F(ApiTest, GivesTheDictionaryThatFramesMayBeMadeWith) {
+    const auto path = "/api/v1/dictionaries/" + std::to_string(frame::dictionary_id());
+    const auto response = ask("GET", path);
+    EXPECT_EQ(response.status, 200);
+    EXPECT_EQ(response.content_type, "application/zstd-dictionary");
+    const auto bytes = frame::dictionary_bytes();
+    EXPECT_EQ(response.body, std::string(bytes.begin(), bytes.end()));
+    EXPECT_EQ(ask("GET", path + "1").status, 404);
+    EXPECT_EQ(ask("DELETE", path).status, 405);
+}
 
 TEST_F(ApiTest, PatchChangesWhatIsGiven) {
     EXPECT_EQ(ask("PATCH", "/api/v1/lidars/A0E1C2D3", R"({"speed_hz": 7})").status, 200);

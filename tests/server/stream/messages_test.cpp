@@ -1,6 +1,7 @@
 // What the gateway says and understands.
 #include "server/stream/messages.hpp"
 
+#include "server/frame/dictionary.hpp"
 #include "sweepcast/v1/stream.pb.h"
 #include "tests/server/stream/known_lidar.hpp"
 
@@ -29,9 +30,12 @@ protected:
     hub::LocalHub hub{demand};
 };
 
-TEST_F(MessagesTest, HelloTellsVersionAndLidars) {
+TEST_F(MessagesTest, HelloTellsVersionLidarsAndDictionaries) {
     const auto message = parse(hello_message(hub));
     ASSERT_TRUE(message.has_hello());
+    ASSERT_EQ(message.hello().dictionaries_size(), 1);
+    EXPECT_EQ(message.hello().dictionaries(0).id(), frame::dictionary_id());
+    EXPECT_EQ(message.hello().dictionaries(0).size(), frame::dictionary_bytes().size());
     EXPECT_EQ(message.hello().protocol_version(), 1U);
     ASSERT_EQ(message.hello().lidars_size(), 1);
     EXPECT_EQ(message.hello().lidars(0).id(), "A0E1C2D3");
