@@ -2,66 +2,50 @@
 #include "server/cli/command.hpp"
 #include "server/cli/stop_signals.hpp"
 #include "server/cli/watch_output.hpp"
-#include "server/client/stream_client.hpp"
-#include "server/frame/frame_decoder.hpp"
+#include "server/cli/wish_options.hpp"
+#include "server/client/client.hpp"
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <boost/asio/awaitable.hpp>
-#include <boost/asio/error.hpp>
+#include <boost/asio/this_coro.hpp>
 #include <fmt/core.h>
 
-#include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <exception>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
+#include <variant>
 
 namespace sweepcast::cli {
 
 namespace asio = boost::asio;
-using namespace std::chrono_literals;
 
 namespace {
 
-constexpr auto connect_limit = 5000ms;
-
 struct WatchArguments {
     std::string url{"tcp://127.0.0.1:8081"};
-    std::string lidar;
-    std::string compression{"zstd"};
+    v1::Subscribe wish;
+    std::optional<std::string> wish_option;  ///< one that was given
     bool csv{};
     bool json{};
+    bool reconnect{true};
     std::uint64_t sweeps{std::numeric_limits<std::uint64_t>::max()};
 };
 
 std::unique_ptr<WatchOutput> make_output(const WatchArguments& arguments) {
     if (arguments.csv) {
-        return make_csv_output();
+        return make_csv_output(arguments.wish.kind() == v1::SECTOR);
     }
     return arguments.json ? make_json_output() : make_table_output();
 }
 
-device::CapturedSweep to_captured(frame::DecodedScan scan, const v1::Frame& from) {
-    device::CapturedSweep captured;
-    if (!scan.sweep.samples.empty()) {
-        captured.monotonic_to_unix =
-            scan.first_unix - scan.sweep.samples.front().time.time_since_epoch();
-    }
-    captured.sweep = std::move(scan.sweep);
-    captured.lidar = from.lidar();
-    captured.sequence = from.sequence();
-    captured.mode = scan.mode;
-    captured.answer_type = scan.answer_type;
-    captured.sample_duration =
-        std::chrono::duration_cast<std::chrono::microseconds>(scan.sample_duration);
-    return captured;
-}
-
-/// Takes in what the gateway says.
+/// Takes in what comes of a gateway.
 class Watcher {
 public:
     explicit Watcher(const WatchArguments& arguments)
@@ -69,8 +53,8 @@ public:
         , sweeps_left_(arguments.sweeps) {}
 
     /// False once there is nothing more to wait for.
-    bool take(const v1::ServerMessage& message) {
-        const bool goes_on = take_in(message);
+    bool take(const client::Event& event) {
+        const bool goes_on = std::visit([this](const auto& what) { return take_in(what); }, event);
         return can_write() && goes_on;
     }
 
@@ -90,41 +74,46 @@ public:
     [[nodiscard]] int exit_code() const { return exit_code_; }
 
 private:
-    bool take_in(const v1::ServerMessage& message) {
-        switch (message.message_case()) {
-        case v1::ServerMessage::kHello:
-            output_->on_hello(message.hello());
-            return true;
-        case v1::ServerMessage::kLidar:
-            output_->on_lidar(message.lidar());
-            return true;
-        case v1::ServerMessage::kFrame:
-            return take_in(message.frame());
-        case v1::ServerMessage::kStats:
-            output_->on_stats(message.stats());
-            return true;
-        case v1::ServerMessage::kError:
-            return fail({{}, message.error().message(), message.error().hint()});
-        case v1::ServerMessage::kClosing:
-            return fail({{}, "the gateway ends the connection: " + message.closing().reason(), ""});
-        case v1::ServerMessage::kSubscribed:
-        case v1::ServerMessage::MESSAGE_NOT_SET:
-            return true;  // of a newer gateway: nothing for us
-        }
+    bool take_in(const client::Connected& connected) {
+        output_->on_connected(connected);
         return true;
     }
 
-    bool take_in(const v1::Frame& frame) {
-        auto scan = decoder_.decode(frame);
-        if (!scan) {
-            return fail(
-                {scan.error(),
-                 "a frame does not decode: " + scan.error().message(),
-                 "is the gateway of another version?"}
-            );
+    bool take_in(const client::Disconnected& disconnected) {
+        output_->on_disconnected(disconnected);
+        return true;
+    }
+
+    bool take_in(const v1::Lidar& lidar) {
+        output_->on_lidar(lidar);
+        return true;
+    }
+
+    bool take_in(const client::Scan& scan) {
+        obeyed_ = true;
+        output_->on_scan(scan);
+        const bool is_whole = scan.kind == v1::SWEEP || scan.last;
+        return !is_whole || --sweeps_left_ > 0;
+    }
+
+    bool take_in(const v1::Subscribed&) {
+        obeyed_ = true;
+        return true;
+    }
+
+    bool take_in(const v1::StreamStats& stats) {
+        output_->on_stats(stats);
+        return true;
+    }
+
+    /// What was obeyed once is refused for a while only: a gateway that was started anew knows its
+    /// lidars when it has heard of them.
+    bool take_in(const v1::StreamError& refusal) {
+        if (obeyed_ && refusal.code() == "lidar_not_found") {
+            output_->on_refusal(refusal);
+            return true;
         }
-        output_->on_sweep(to_captured(std::move(*scan), frame), frame.ByteSizeLong());
-        return --sweeps_left_ > 0;
+        return fail({{}, refusal.message(), refusal.hint()});
     }
 
     /// False, and the exit code says so, if what was printed did not get through.
@@ -141,42 +130,33 @@ private:
     }
 
     std::unique_ptr<WatchOutput> output_;
-    frame::FrameDecoder decoder_;
     std::uint64_t sweeps_left_;
+    bool obeyed_{};
     int exit_code_{};
 };
 
+client::ClientOptions options_for(const client::StreamUrl& url, const WatchArguments& arguments) {
+    client::ClientOptions options;
+    options.wish = arguments.wish;
+    if (url.has_query()) {
+        options.wish.reset();
+    }
+    options.reconnect =
+        arguments.reconnect ? client::Reconnect::once_connected : client::Reconnect::never;
+    return options;
+}
+
 asio::awaitable<void>
 receive_all(client::StreamUrl url, const WatchArguments& arguments, Watcher& watcher) {
-    auto connected = co_await client::StreamClient::connect(url, connect_limit);
-    if (!connected) {
-        watcher.fail(connected.error());
-        co_return;
-    }
-    auto& client = **connected;
-    const bool url_says_it = url.target.find('?') != std::string::npos;
-    if (!url_says_it) {
-        v1::Subscribe wish;
-        wish.set_lidar(arguments.lidar);
-        wish.set_compression(arguments.compression == "none" ? v1::NONE : v1::ZSTD);
-        if (const auto sent = co_await client.subscribe(wish); !sent) {
-            watcher.fail(
-                {sent.error(), "the gateway ended the connection: " + sent.error().message(), ""}
-            );
-            co_return;
-        }
-    }
+    auto options = options_for(url, arguments);
+    client::Client client(co_await asio::this_coro::executor, std::move(url), std::move(options));
     for (;;) {
-        const auto message = co_await client.receive();
-        if (!message && message.error() == asio::error::operation_aborted) {
-            co_return;  // told to stop
-        }
-        if (!message) {
-            watcher.fail({message.error(), "the connection ended: " + message.error().message(), ""}
-            );
+        const auto event = co_await client.next();
+        if (!event) {
+            watcher.fail(event.error());
             co_return;
         }
-        if (!watcher.take(**message)) {
+        if (!watcher.take(*event)) {
             co_return;
         }
     }
@@ -186,6 +166,13 @@ int watch(const WatchArguments& arguments) {
     auto url = client::parse_stream_url(arguments.url);
     if (!url) {
         return report(url.error());
+    }
+    if (url->has_query() && arguments.wish_option) {
+        return report(
+            {{},
+             fmt::format("what to get is in the URL and in {}", *arguments.wish_option),
+             "say it in one place: options alone, without the URL's query, can say it all"}
+        );
     }
     std::signal(SIGPIPE, SIG_IGN);  // a reader that goes is an error of a write
     Watcher watcher(arguments);
@@ -211,31 +198,31 @@ void add_watch_command(CLI::App& app, int& exit_code) {
             "tcp://HOST:PORT or ws://HOST:PORT[/api/v1/stream?lidar=ID&compression=none]"
         )
         ->capture_default_str();
-    command.add_option(
-        "--lidar",
-        arguments->lidar,
-        "Id of the lidar; without it all (where the URL has no query)"
-    );
-    command
-        .add_option(
-            "--compression",
-            arguments->compression,
-            "zstd or none (where the URL has no query)"
-        )
-        ->check(CLI::IsMember({"zstd", "none"}))
-        ->capture_default_str();
     auto* csv = command.add_flag("--csv", arguments->csv, "Print a line a sample");
-    command.add_flag("--json", arguments->json, "Print a line of JSON a sweep")->excludes(csv);
+    command.add_flag("--json", arguments->json, "Print a line of JSON a sweep (or sector)")
+        ->excludes(csv);
     command.add_option("--sweeps", arguments->sweeps, "End after so many sweeps")
         ->check(CLI::PositiveNumber);
+    command.add_flag(
+        "--reconnect,!--no-reconnect",
+        arguments->reconnect,
+        "Go on when the gateway comes back (the usual), or end with an error when it goes"
+    );
+    add_wish_options(command, arguments->wish);
     command.footer(
         "Examples:\n"
         "  sweepcast watch                                    a live table of the gateway on this "
         "machine\n"
         "  sweepcast watch tcp://robot:8081 --csv --sweeps 10 > scan.csv\n"
+        "  sweepcast watch tcp://robot:8081 --json --keep 300-60 --max-distance 4000 --max-rate 2\n"
+        "  sweepcast watch tcp://robot:8081 --csv --kind sector --sector-deg 30\n"
+        "  sweepcast watch tcp://robot:8081 --csv --bins 360 --bins-minimum\n"
         "  sweepcast watch 'ws://robot:8080/api/v1/stream?compression=none' --json"
     );
-    command.callback([arguments, &exit_code] { exit_code = watch(*arguments); });
+    command.callback([arguments, &command, &exit_code] {
+        arguments->wish_option = given_wish_option(command);
+        exit_code = watch(*arguments);
+    });
 }
 
 }  // namespace sweepcast::cli

@@ -1,5 +1,6 @@
 #include "server/cli/watch_output.hpp"
 
+#include "driver/device/captured_sweep.hpp"
 #include "server/api/json.hpp"
 #include "server/api/scan_export.hpp"
 #include "sweepcast/v1/api.pb.h"
@@ -8,8 +9,13 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
 #include <iterator>
+#include <map>
 #include <unistd.h>
+#include <utility>
 
 namespace sweepcast::cli {
 
@@ -17,34 +23,55 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-void note_drops(const v1::StreamStats& stats) {
-    fmt::print(
-        stderr,
-        "sweepcast: this client reads too slowly: {} frames dropped so far\n",
-        stats.frames_dropped()
-    );
-}
-
-class CsvOutput final : public WatchOutput {
+/// An output that a program reads: what is for its user goes to standard error.
+class LinesOutput : public WatchOutput {
 public:
-    void on_hello(const v1::Hello&) override {}
+    void on_connected(const client::Connected&) override {
+        if (std::exchange(lost_, false)) {
+            note("connected again");
+        }
+    }
+    void on_disconnected(const client::Disconnected& disconnected) override {
+        if (!std::exchange(lost_, true)) {  // once for all attempts
+            note(disconnected.why.cause + "; trying again");
+        }
+    }
+    void on_refusal(const v1::StreamError& refusal) override {
+        note(refusal.message() + "; waiting for it");
+    }
+    void on_stats(const v1::StreamStats& stats) override {
+        note(fmt::format(
+            "this client reads too slowly: {} frames dropped so far",
+            stats.frames_dropped()
+        ));
+    }
     void on_lidar(const v1::Lidar&) override {}
     void on_end() override {}
 
-    void on_sweep(const device::CapturedSweep& captured, std::size_t) override {
+private:
+    static void note(const std::string& text) { fmt::print(stderr, "sweepcast: {}\n", text); }
+
+    bool lost_{};
+};
+
+class CsvOutput final : public LinesOutput {
+public:
+    explicit CsvOutput(bool sectors) : sectors_(sectors) {}
+
+    void on_scan(const client::Scan& scan) override {
         text_.clear();
         if (!std::exchange(header_written_, true)) {
-            text_ += "lidar,sequence,unix_ns,angle_deg,distance_mm,quality,flag\n";
+            text_ += sectors_ ? "lidar,sequence,sector," : "lidar,sequence,";
+            text_ += "unix_ns,angle_deg,distance_mm,quality,flag\n";
         }
-        for (const auto& sample : captured.sweep.samples) {
-            const std::chrono::nanoseconds time =
-                sample.time.time_since_epoch() + captured.monotonic_to_unix;
+        auto which = fmt::format("{},{}", scan.lidar, scan.sequence);
+        which += sectors_ ? fmt::format(",{}", scan.sector) : "";
+        for (const auto& sample : scan.scan.sweep.samples) {
             fmt::format_to(
                 std::back_inserter(text_),
-                "{},{},{},{:.4f},{:.2f},{},{}\n",
-                captured.lidar,
-                captured.sequence,
-                time.count(),
+                "{},{},{:.4f},{:.2f},{},{}\n",
+                which,
+                scan.scan.unix_time(sample).count(),
                 sample.angle.degrees(),
                 sample.distance.millimetres(),
                 sample.quality,
@@ -54,35 +81,57 @@ public:
         write(text_);
     }
 
-    void on_stats(const v1::StreamStats& stats) override { note_drops(stats); }
-
 private:
+    bool sectors_;
     bool header_written_{};
     std::string text_;
 };
 
-class JsonOutput final : public WatchOutput {
-public:
-    void on_hello(const v1::Hello&) override {}
-    void on_lidar(const v1::Lidar&) override {}
-    void on_end() override {}
-
-    void on_sweep(const device::CapturedSweep& captured, std::size_t) override {
-        v1::LatestScan scan;
-        api::to_message(captured, scan);
-        write(api::to_json_line(scan));
+/// As the API exports a sweep.
+device::CapturedSweep to_captured(const client::Scan& from) {
+    device::CapturedSweep captured;
+    captured.sweep = from.scan.sweep;
+    captured.lidar = from.lidar;
+    captured.sequence = from.sequence;
+    captured.mode = from.scan.mode;
+    captured.answer_type = from.scan.answer_type;
+    if (!captured.sweep.samples.empty()) {
+        captured.monotonic_to_unix =
+            from.scan.first_unix - captured.sweep.samples.front().time.time_since_epoch();
     }
+    return captured;
+}
 
-    void on_stats(const v1::StreamStats& stats) override { note_drops(stats); }
+class JsonOutput final : public LinesOutput {
+public:
+    void on_scan(const client::Scan& scan) override {
+        v1::LatestScan message;
+        api::to_message(to_captured(scan), message);
+        if (scan.kind == v1::SECTOR) {
+            message.set_sector(scan.sector);
+            message.set_last(scan.last);
+        }
+        write(api::to_json_line(message));
+    }
 };
 
 class TableOutput final : public WatchOutput {
 public:
-    void on_hello(const v1::Hello& hello) override {
-        for (const auto& lidar : hello.lidars()) {
+    void on_connected(const client::Connected& connected) override {
+        note_.clear();
+        rows_.clear();
+        for (const auto& lidar : connected.hello.lidars()) {
             rows_[lidar.number()].lidar = lidar;
         }
         print();
+    }
+
+    void on_disconnected(const client::Disconnected& disconnected) override {
+        set_note(disconnected.why.cause + "; trying again");
+    }
+
+    void on_refusal(const v1::StreamError& refusal) override {
+        set_note(refusal.message() + "; waiting for it");
     }
 
     void on_lidar(const v1::Lidar& lidar) override {
@@ -90,23 +139,29 @@ public:
         print_if_due();
     }
 
-    void on_sweep(const device::CapturedSweep& captured, std::size_t bytes) override {
+    void on_scan(const client::Scan& scan) override {
         const auto row = std::ranges::find_if(rows_, [&](const auto& entry) {
-            return entry.second.lidar.id() == captured.lidar;
+            return entry.second.lidar.id() == scan.lidar;
         });
         if (row == rows_.end()) {
             return;
         }
+        note_.clear();
         auto& [number, shown] = *row;
-        shown.points = captured.sweep.samples.size();
-        shown.hz = captured.sweep.rotation_hz();
-        shown.bytes = bytes;
-        shown.missed += shown.sequence != 0 ? captured.sequence - shown.sequence - 1 : 0;
-        shown.sequence = captured.sequence;
+        const bool goes_on = scan.kind == v1::SECTOR && scan.sector > 0;
+        shown.points_so_far = (goes_on ? shown.points_so_far : 0) + scan.scan.sweep.samples.size();
+        shown.bytes_so_far = (goes_on ? shown.bytes_so_far : 0) + scan.wire_bytes;
+        shown.missed += scan.missed;
+        if (scan.kind == v1::SWEEP || scan.last) {
+            shown.points = shown.points_so_far;
+            shown.bytes = shown.bytes_so_far;
+            shown.hz = scan.scan.sweep.rotation_hz();
+            shown.sequence = scan.sequence;
+        }
         print_if_due();
     }
 
-    void on_stats(const v1::StreamStats&) override {}  // the table counts the gaps itself
+    void on_stats(const v1::StreamStats&) override {}  // the client counts the gaps itself
 
     void on_end() override {
         if (!rows_.empty()) {
@@ -117,12 +172,20 @@ public:
 private:
     struct Row {
         v1::Lidar lidar;
-        std::size_t points{};
+        /// Of the latest sweep, and of the one under way if it comes in sectors.
+        std::size_t points{}, points_so_far{};
+        std::size_t bytes{}, bytes_so_far{};
         double hz{};
-        std::size_t bytes{};
         std::uint64_t sequence{};
         std::uint64_t missed{};
     };
+
+    /// Shows it below the table until a scan comes.
+    void set_note(const std::string& text) {
+        if (std::exchange(note_, text) != text) {
+            print();
+        }
+    }
 
     void print_if_due() {
         const auto interval = terminal_ ? std::chrono::milliseconds(100) : std::chrono::seconds(1);
@@ -154,7 +217,12 @@ private:
         for (const auto& [number, row] : rows_) {
             text += line(row) + end;
         }
-        lines_ = rows_.size() + 1;
+        if (!note_.empty()) {
+            text += note_ + end;
+        }
+        // What is left of a longer table before.
+        text += terminal_ ? "\x1b[J" : "";
+        lines_ = rows_.size() + (note_.empty() ? 1 : 2);
         write(text);
     }
 
@@ -178,6 +246,7 @@ private:
     std::map<std::uint32_t, Row> rows_;
     Clock::time_point printed_at_{};
     std::size_t lines_{};
+    std::string note_;
 };
 
 }  // namespace
@@ -189,8 +258,8 @@ void WatchOutput::write(const std::string& text) {
     }
 }
 
-std::unique_ptr<WatchOutput> make_csv_output() {
-    return std::make_unique<CsvOutput>();
+std::unique_ptr<WatchOutput> make_csv_output(bool sectors) {
+    return std::make_unique<CsvOutput>(sectors);
 }
 
 std::unique_ptr<WatchOutput> make_json_output() {

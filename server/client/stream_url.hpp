@@ -16,6 +16,8 @@ struct StreamUrl {
 
     /// The host as URLs and Host headers have it: an IPv6 address in brackets.
     [[nodiscard]] std::string url_host() const;
+    /// Whether it says what to get.
+    [[nodiscard]] bool has_query() const { return target.find('?') != std::string::npos; }
 };
 
 /// Ports default to 8081 (tcp) and 8080 (ws), a WebSocket's path to /api/v1/stream. Only a

@@ -62,6 +62,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{{"serve", "--threads", "0"}, "--threads"},
         Mistake{{"watch", "http://robot"}, "tcp://127.0.0.1:8081"},
         Mistake{{"watch", "tcp://127.0.0.1:1?lidar=X"}, "--lidar"},
+        Mistake{{"watch", "ws://127.0.0.1:1?kind=sweep", "--kind", "sector"}, "one place"},
+        Mistake{{"watch", "--keep", "90"}, "FROM-TO"},
         Mistake{{"watch", "tcp://[::1]:1"}, "curl http://[::1]:8080/healthz"},
         Mistake{{"watch", "tcp://127.0.0.1:1"}, "cannot connect to 127.0.0.1:1"},
         Mistake{{"virtual", "--model", "z9"}, "a2m12"},
@@ -263,6 +265,32 @@ TEST(CommandLine, WatchTakesAQueryWithoutAPath) {
     const auto watched =
         call({"watch", "ws://" + gateway.http + "?compression=none", "--csv", "--sweeps", "1"});
     EXPECT_EQ(watched.exit_code, 0) << watched.log;
+}
+
+TEST(CommandLine, WatchGoesOnWhenTheGatewayComesBack) {
+    const std::vector<std::string> lidar{"--lidar", "virtual:a1m8"};
+    auto gateway = std::make_unique<GatewayProcess>(lidar);
+    const auto stream = gateway->tcp;
+    gateway->process.wait_for_log("scanning");
+    const auto lidars = http(gateway->http, "GET", "/api/v1/lidars").body;
+    const auto id = lidars.substr(lidars.find('"', lidars.find("\"id\":") + 5) + 1, 8);
+    Process watch({program(), "watch", "tcp://" + stream, "--csv", "--lidar", id});
+    watch.wait_for_output(id + ",");
+    gateway->process.signal(SIGTERM);
+    gateway->process.wait();
+    watch.wait_for_log("shutting down; trying again");
+    gateway = std::make_unique<GatewayProcess>(
+        std::vector<std::string>{"--lidar", "virtual:a1m8", "--tcp", stream}
+    );
+    watch.wait_for_log("connected again");
+    watch.wait_for_output(id + ",1,");
+    watch.signal(SIGINT);
+    EXPECT_EQ(watch.wait(), 0);
+
+    Process once({program(), "watch", "tcp://" + stream, "--csv", "--no-reconnect"});
+    once.wait_for_output(id + ",");
+    gateway.reset();
+    EXPECT_EQ(once.wait(), 1);
 }
 
 TEST(CommandLine, WatchEndsWhenTold) {

@@ -3,6 +3,7 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/use_future.hpp>
 
+#include <algorithm>
 #include <cstdlib>
 #include <future>
 #include <stdexcept>
@@ -21,8 +22,10 @@ std::vector<std::string> command(std::string subcommand, std::vector<std::string
 }
 
 std::vector<std::string> on_own_ports(std::vector<std::string> options) {
-    for (const auto* option : {"--http", "127.0.0.1:0", "--tcp", "127.0.0.1:0"}) {
-        options.emplace_back(option);
+    for (const auto* port : {"--http", "--tcp"}) {
+        if (std::ranges::find(options, port) == options.end()) {
+            options.insert(options.end(), {port, "127.0.0.1:0"});
+        }
     }
     return options;
 }
@@ -79,6 +82,10 @@ void Subscriber::subscribe(const std::string& lidar, bool compressed) {
     v1::Subscribe wish;
     wish.set_lidar(lidar);
     wish.set_compression(compressed ? v1::ZSTD : v1::NONE);
+    subscribe(wish);
+}
+
+void Subscriber::subscribe(const v1::Subscribe& wish) {
     if (!run(client_->subscribe(wish))) {
         throw std::runtime_error("the connection has ended");
     }

@@ -38,7 +38,7 @@ struct VirtualLidarProcess {
     std::string port;  ///< what to open: a path or a URL
 };
 
-/// `sweepcast serve` with these options, on ports of its own.
+/// `sweepcast serve` with these options, on ports of its own where they say none.
 struct GatewayProcess {
     explicit GatewayProcess(std::vector<std::string> options);
     Process process;
@@ -64,6 +64,7 @@ public:
     ~Subscriber();
 
     void subscribe(const std::string& lidar = "", bool compressed = true);
+    void subscribe(const v1::Subscribe& wish);
 
     /// The next message of any kind.
     v1::ServerMessage next();

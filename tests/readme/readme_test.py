@@ -59,11 +59,16 @@ def run(commands: str, port: str, folder: pathlib.Path) -> list[re.Match]:
     return promised
 
 
-def check_against_vectors(program: str, repository: pathlib.Path, folder: pathlib.Path) -> None:
-    """The functions of client.py read the scans on file as the vendor's decoder read the bytes behind them."""
-    checker = """
-import json, pathlib, sys
-vectors = pathlib.Path(sys.argv[1])
+# What follows the functions of a client in the check of them: reads each scan on file as the vendor's decoder read the
+# bytes behind it. By language: the client's file, where its functions end, what runs it, and the checker.
+CHECKERS = {
+    "python": (
+        "client.py",
+        "\nwish = ",
+        "/usr/bin/python3",
+        """
+import json, pathlib
+vectors = pathlib.Path(sys.argv[-1])
 for path in sorted((vectors / "scans").glob("*.json")):
     case = json.loads(path.read_text())
     nodes = json.loads((vectors / (case["vector"] + ".json")).read_text())["nodes"]
@@ -74,12 +79,42 @@ for path in sorted((vectors / "scans").glob("*.json")):
     assert [d * scan.distance_unit_um // 250 for d in distances(scan)] == [node[1] for node in nodes], path
     assert len(times_ns(scan)) == len(nodes), path
     print("reads", path.name)
-"""
-    functions = program[: program.index("\nwish = ")].replace(
+""",
+    ),
+    "node": (
+        "client.mjs",
+        "\nconst socket = ",
+        "node",
+        """
+import assert from "node:assert";
+import fs from "node:fs";
+const vectors = process.argv.at(-1);
+const read = (name) => JSON.parse(fs.readFileSync(`${vectors}/${name}`, "utf8"));
+for (const name of fs.readdirSync(`${vectors}/scans`).filter((name) => name.endsWith(".json"))) {
+  const { vector, first, count, scan: hex } = read(`scans/${name}`);
+  const nodes = read(`${vector}.json`).nodes.slice(first, first + count);
+  const scan = fromBinary(ScanSchema, Buffer.from(hex, "hex"));
+  const vendors = angles(scan).map((a) => (scan.angleUnitsPerTurn === 23040 ? Math.floor((a * 256) / 90) : a));
+  assert.deepEqual(vendors, nodes.map((node) => node[0]), name);
+  const quarterMm = distances(scan).map((d) => Math.floor((d * scan.distanceUnitUm) / 250));
+  assert.deepEqual(quarterMm, nodes.map((node) => node[1]), name);
+  assert.equal(timesNs(scan).length, nodes.length, name);
+  console.log("reads", name);
+}
+""",
+    ),
+}
+
+
+def check_against_vectors(language: str, program: str, repository: pathlib.Path, folder: pathlib.Path) -> None:
+    """The functions of the client read the scans on file as the vendor's decoder read the bytes behind them."""
+    file, functions_end, interpreter, checker = CHECKERS[language]
+    functions = program[: program.index(functions_end)].replace(
         "stream = socket.create_connection((sys.argv[1], int(sys.argv[2]))).makefile(\"rwb\")", ""
     )
-    (folder / "check.py").write_text(functions + checker, encoding="utf-8")
-    subprocess.run(["/usr/bin/python3", "check.py", str(repository / "tests/vectors")], cwd=folder, check=True)
+    check = "check_" + file
+    (folder / check).write_text(functions + checker, encoding="utf-8")
+    subprocess.run([interpreter, check, str(repository / "tests/vectors")], cwd=folder, check=True)
 
 
 def main() -> None:
@@ -94,8 +129,8 @@ def main() -> None:
         gateway, port = start_gateway(binary)
         try:
             lines = run(marked[language], port, folder)
-            if language == "python":
-                check_against_vectors(marked["client.py"], repository, folder)
+            if language in CHECKERS:
+                check_against_vectors(language, marked[CHECKERS[language][0]], repository, folder)
         finally:
             gateway.terminate()
             gateway.wait()
