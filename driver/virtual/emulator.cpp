@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -98,10 +99,26 @@ std::uint32_t Emulator::baud() const {
 
 void Emulator::take(Moment now, std::vector<Transmitted>& out) {
     const auto before = static_cast<std::ptrdiff_t>(out.size());
-    line_.take(now, out);
+    if (settings_.faults.burst > 0ns) {
+        take_burst(now, out);
+    } else {
+        line_.take(now, out);
+    }
     for (auto part = out.begin() + before; part != out.end(); ++part) {
         bad_line_.damage(part->bytes);
     }
+}
+
+// An adapter that holds what it has heard until its timer ends, which never stops.
+void Emulator::take_burst(Moment now, std::vector<Transmitted>& out) {
+    line_.take(now, held_);
+    if (now < next_burst_) {
+        return;
+    }
+    std::move(held_.begin(), held_.end(), std::back_inserter(out));
+    held_.clear();
+    const std::chrono::nanoseconds burst = settings_.faults.burst;
+    next_burst_ = now - (now - switched_on_) % burst + burst;
 }
 
 void Emulator::receive(std::span<const std::uint8_t> bytes, Moment now, std::uint32_t host_baud) {
@@ -359,6 +376,9 @@ bool Emulator::begin_stream(Moment now) {
 
 std::optional<Moment> Emulator::next_due() const {
     std::optional<Moment> due = line_.next_byte();
+    if (!held_.empty() || (due && settings_.faults.burst > 0ns)) {
+        due = next_burst_;
+    }
     const auto consider = [&due](std::optional<Moment> moment) {
         if (moment && (!due || *moment < *due)) {
             due = moment;

@@ -123,6 +123,7 @@ private:
     void note_motor(bool switched);
     void
     listen_for_autobaud(std::span<const std::uint8_t> bytes, std::uint32_t host_baud, Moment now);
+    void take_burst(Moment now, std::vector<Transmitted>& out);
     bool advance_scan(Moment now);
     bool advance_playback(Moment now);
     bool begin_stream(Moment now);
@@ -141,6 +142,8 @@ private:
     Autobaud autobaud_;
     TransmitLine line_;
     BadLine bad_line_;
+    std::vector<Transmitted> held_;  // by the adapter
+    Moment next_burst_{};
     protocol::RequestParser parser_;
     std::optional<Moment> booted_at_;
     std::optional<Moment> next_banner_;

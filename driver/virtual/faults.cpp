@@ -43,6 +43,21 @@ bool set_rate(Faults& faults, std::optional<std::string_view> value) {
     return failure == std::errc{} && stop == end && faults.*Member >= 0.0 && faults.*Member <= 1.0;
 }
 
+bool set_burst(Faults& faults, std::optional<std::string_view> value) {
+    constexpr int usual_ms = 16;
+    constexpr int most_ms = 1000;
+    int given_ms = usual_ms;
+    if (value) {
+        const auto* const end = value->data() + value->size();
+        const auto [stop, failure] = std::from_chars(value->data(), end, given_ms);
+        if (failure != std::errc{} || stop != end || given_ms < 1 || given_ms > most_ms) {
+            return false;
+        }
+    }
+    faults.burst = std::chrono::milliseconds(given_ms);
+    return true;
+}
+
 template <HealthStatus Status>
 bool set_health(Faults& faults, std::optional<std::string_view> value) {
     constexpr std::uint16_t usual_code = 1;
@@ -83,6 +98,11 @@ constexpr std::array all_faults{
     Fault{"noise", "=RATE", "this part of the bytes it sends is changed", set_rate<&Faults::noise>},
     Fault{"drop", "=RATE", "this part of the bytes it sends is lost", set_rate<&Faults::drop>},
     Fault{
+        "burst",
+        "[=MS]",
+        "what it sends arrives every 16 ms only, as behind some USB adapters",
+        set_burst},
+    Fault{
         "sample-time-zero",
         "",
         "says that a sample takes 0 us",
@@ -110,7 +130,8 @@ Problem not_a_fault(std::string_view text, const Fault* fault) {
                 fault->name,
                 fault->value
             ),
-            "a RATE is 0 to 1, e.g. 0.01; a CODE is 0 to 65535, or hex such as 0x8001"};
+            "a RATE is 0 to 1, e.g. 0.01; MS is 1 to 1000; a CODE is 0 to 65535, or hex such as "
+            "0x8001"};
     }
     std::string known;
     for (const auto& each : all_faults) {

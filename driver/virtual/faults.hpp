@@ -5,6 +5,7 @@
 #include "driver/protocol/result.hpp"
 #include "driver/virtual/random.hpp"
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -16,15 +17,17 @@ namespace sweepcast::virtual_lidar {
 
 /// Which faults a scanner has. By default none.
 struct Faults {
-    bool mute{};                ///< it never says anything
-    bool banner{};              ///< prints its boot text again and again, and answers nothing
-    bool motor_stall{};         ///< it takes scan requests, but the motor never turns
-    bool sample_time_zero{};    ///< it says that a sample takes 0 us (protocol.md 13.14)
-    bool bare_echo{};           ///< it echoes GET_LIDAR_CONF without a value (protocol.md 13.15)
-    bool junk{};                ///< noise before every descriptor (protocol.md 13.1, 13.2)
-    bool leftovers{};           ///< it is scanning already, as after a crash of its host
-    double noise{};             ///< part of the bytes to the host that are changed on the way, 0..1
-    double drop{};              ///< part of the bytes to the host that are lost on the way, 0..1
+    bool mute{};              ///< it never says anything
+    bool banner{};            ///< prints its boot text again and again, and answers nothing
+    bool motor_stall{};       ///< it takes scan requests, but the motor never turns
+    bool sample_time_zero{};  ///< it says that a sample takes 0 us (protocol.md 13.14)
+    bool bare_echo{};         ///< it echoes GET_LIDAR_CONF without a value (protocol.md 13.15)
+    bool junk{};              ///< noise before every descriptor (protocol.md 13.1, 13.2)
+    bool leftovers{};         ///< it is scanning already, as after a crash of its host
+    double noise{};           ///< part of the bytes to the host that are changed on the way, 0..1
+    double drop{};            ///< part of the bytes to the host that are lost on the way, 0..1
+    /// Bytes reach the host only so often, as behind a USB adapter (protocol.md 13.20); 0: at once.
+    std::chrono::milliseconds burst{};
     protocol::Health health{};  ///< from the start and after each RESET
 };
 
@@ -33,7 +36,8 @@ struct Faults {
 
 /// Adds the fault that `text` names to `faults`: "mute", "banner", "motor-stall",
 /// "sample-time-zero", "bare-echo", "junk", "leftovers", "noise=RATE", "drop=RATE",
-/// "protection-stop" or "warning", these two also with "=CODE" (0..65535, or hex with 0x).
+/// "burst" (also with "=MS", 1..1000), "protection-stop" or "warning", these two also with "=CODE"
+/// (0..65535, or hex with 0x).
 /// Errors: errc::invalid_option.
 [[nodiscard]] Result<void, Problem> add_fault(Faults& faults, std::string_view text);
 

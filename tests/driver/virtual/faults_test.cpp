@@ -7,6 +7,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <numeric>
+
 namespace sweepcast::virtual_lidar {
 namespace {
 
@@ -39,6 +42,8 @@ TEST(AddFault, KnowsEachByItsName) {
     EXPECT_TRUE(parsed("leftovers").leftovers);
     EXPECT_EQ(parsed("noise=0.25").noise, 0.25);
     EXPECT_EQ(parsed("drop=1").drop, 1.0);
+    EXPECT_EQ(parsed("burst").burst, 16ms);
+    EXPECT_EQ(parsed("burst=1").burst, 1ms);
     EXPECT_EQ(parsed("protection-stop").health, (protocol::Health{HealthStatus::error, 1}));
     EXPECT_EQ(parsed("protection-stop=0x8001").health.code, 0x8001);
     EXPECT_EQ(parsed("warning=7").health, (protocol::Health{HealthStatus::warning, 7}));
@@ -73,6 +78,10 @@ INSTANTIATE_TEST_SUITE_P(
         "",
         "mut",
         "mute=1",
+        "burst=",
+        "burst=0",
+        "burst=1001",
+        "burst=2x",
         "noise",
         "noise=",
         "noise=1.5",
@@ -221,6 +230,31 @@ TEST(Junk, ComesBeforeEveryDescriptorAndDoublesItsStartByte) {
         Bytes(scan.begin(), scan.begin() + 8),
         (Bytes{0, 0x37, 0xA5, 0x11, 0xFF, 0xA5, 0xA5, 0x5A})
     );
+}
+
+TEST(Burst, IsHowBytesReachTheHostNoneOfThemLost) {
+    const auto deliveries = [](std::string_view fault) {
+        FakeHost host("s2", fault.empty() ? EmulatorSettings{} : EmulatorSettings{parsed(fault)});
+        host.switch_on_and_spin_up();
+        host.send(protocol::encode(protocol::express_scan_request(1)));
+        host.run(200ms);
+        host.received();
+        std::vector<std::size_t> sizes;
+        for (int i = 0; i < 160; ++i) {
+            host.run(1ms);
+            sizes.push_back(host.received().size());
+        }
+        return sizes;
+    };
+    const auto steady = deliveries("");
+    EXPECT_EQ(std::count(steady.begin(), steady.end(), 0U), 0);
+    const auto bursts = deliveries("burst");
+    EXPECT_EQ(std::count(bursts.begin(), bursts.end(), 0U), 150);
+    const auto sum = [](const auto& sizes) {
+        return std::accumulate(sizes.begin(), sizes.end(), std::size_t{});
+    };
+    EXPECT_NEAR(static_cast<double>(sum(bursts)), static_cast<double>(sum(steady)), 16 * 68);
+    EXPECT_EQ(sum(deliveries("burst=1")), sum(steady));
 }
 
 TEST(Leftovers, AreMeasurementsThatNobodyAskedForUntilStop) {
