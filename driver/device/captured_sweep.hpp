@@ -27,6 +27,9 @@ struct CapturedSweep {
     /// Add it to a sample's time to get UNIX time. Taken once a sweep, when it begins, so that a
     /// step of the wall clock shows between sweeps and never within one.
     std::chrono::nanoseconds monotonic_to_unix{};
+    /// By how much the wall clock was set forward (negative: back) since the sweep before, so that
+    /// UNIX times of the two do not go together; 0: it was not, or only let run faster or slower.
+    std::chrono::nanoseconds clock_step{};
 };
 
 }  // namespace sweepcast::device

@@ -314,6 +314,7 @@ void Device::on_revolution(protocol::Sweep sweep, protocol::AnswerType type) {
     captured.answer_type = type;
     captured.sample_duration = std::chrono::round<std::chrono::microseconds>(mode_.sample_duration);
     captured.monotonic_to_unix = monotonic_to_unix_;
+    captured.clock_step = std::exchange(clock_step_, {});
     captured.sequence = ++sequence_;
     observer_.on_sweep(std::move(captured));
 }
@@ -325,12 +326,14 @@ void Device::on_progress(
 ) {
     begin_sweep(sweep.begun);
     SweepProgress progress;
-    progress.sweep = {sweep.samples, begun_};
+    progress.sweep = sweep;
+    progress.sweep.begun = begun_;
     progress.sequence = sequence_ + 1;
     progress.mode = mode_.name;
     progress.answer_type = type;
     progress.sample_duration = std::chrono::round<std::chrono::microseconds>(mode_.sample_duration);
     progress.monotonic_to_unix = monotonic_to_unix_;
+    progress.clock_step = clock_step_;
     progress.arrival = arrival;
     observer_.on_progress(progress);
 }
@@ -342,9 +345,9 @@ void Device::begin_sweep(std::uint64_t begun) {
         return;
     }
     begun_ = begun;
-    const std::chrono::nanoseconds unix_now = std::chrono::system_clock::now().time_since_epoch();
-    const std::chrono::nanoseconds monotonic_now = Clock::now().time_since_epoch();
-    monotonic_to_unix_ = unix_now - monotonic_now;
+    const auto relation = wall_clock_.take(read_clocks());
+    monotonic_to_unix_ = relation.monotonic_to_unix;
+    clock_step_ += relation.step;  // a sweep that is given up leaves it to the next one
 }
 
 /// Tells the speed and the state of the line: at once when the speed is reached or lost, else now

@@ -11,6 +11,7 @@
 #include "driver/device/scan.hpp"
 #include "driver/device/speed_regulator.hpp"
 #include "driver/device/sweep_progress.hpp"
+#include "driver/device/wall_clock.hpp"
 #include "driver/link/link.hpp"
 #include "driver/protocol/result.hpp"
 
@@ -182,9 +183,11 @@ private:
     SpeedRegulator regulator_{motor_};
     ScanMode mode_;  ///< of the running scan
     std::uint64_t sequence_{};
-    std::uint64_t begun_{};                         ///< sweeps, in all scans
-    std::uint64_t begun_before_scan_{};             ///< in those before the running one
+    std::uint64_t begun_{};              ///< sweeps, in all scans
+    std::uint64_t begun_before_scan_{};  ///< in those before the running one
+    WallClock wall_clock_;
     std::chrono::nanoseconds monotonic_to_unix_{};  ///< of the sweep under way
+    std::chrono::nanoseconds clock_step_{};         ///< since the one told last
     std::string told_failure_;  ///< the cause that the log was last told; empty once all is well
     std::string told_warning_;  ///< of the rotation
     link::Link* link_{};        ///< the open one, while there is one

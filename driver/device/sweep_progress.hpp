@@ -22,8 +22,9 @@ struct SweepProgress {
     std::string_view mode;
     protocol::AnswerType answer_type{protocol::AnswerType::normal};
     std::chrono::microseconds sample_duration{};
-    /// As the CapturedSweep will have it.
+    /// As the CapturedSweep will have them.
     std::chrono::nanoseconds monotonic_to_unix{};
+    std::chrono::nanoseconds clock_step{};
     /// When the last byte arrived that was read.
     protocol::SampleTime arrival{};
 };
