@@ -34,16 +34,19 @@ Result<ScanReader> ScanReader::create(
     if (!decoder) {
         return decoder.error();
     }
-    return ScanReader(std::move(*decoder), mode.max_distance_mm, baud, line);
+    const protocol::SampleClock clock({type, mode.sample_duration, time_of_byte(baud)});
+    return ScanReader(std::move(*decoder), clock, mode.max_distance_mm, baud, line);
 }
 
 ScanReader::ScanReader(
     protocol::Decoder decoder,
+    protocol::SampleClock clock,
     double max_distance_mm,
     std::uint32_t baud,
     LineQuality& line
 )
     : decoder_(std::move(decoder))
+    , clock_(std::move(clock))
     , per_byte_(time_of_byte(baud))
     , max_distance_q2_(
           max_distance_mm > 0 ? to_q2(max_distance_mm) : std::numeric_limits<std::uint32_t>::max()
@@ -57,6 +60,7 @@ std::size_t ScanReader::push(
 ) {
     decoded_.clear();
     decoder_.push(bytes, {now, per_byte_}, decoded_);
+    clock_.retime(decoded_, bytes.size(), now);
     clip_range();
     account_for(bytes.size());
     assembler_.push(decoded_, finished);

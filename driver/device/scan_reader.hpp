@@ -5,6 +5,7 @@
 #include "driver/device/scan_mode.hpp"
 #include "driver/protocol/decode.hpp"
 #include "driver/protocol/result.hpp"
+#include "driver/protocol/sample_clock.hpp"
 #include "driver/protocol/sweep_assembler.hpp"
 
 #include <cstddef>
@@ -24,7 +25,7 @@ public:
 
     /// Takes bytes whose last one arrived at `now`; appends the sweeps that they complete to
     /// `finished`. Gives how many samples there were. A distance beyond the mode's range becomes no
-    /// echo (protocol.md 13.13).
+    /// echo (protocol.md 13.13); times are those of a SampleClock.
     std::size_t push(
         std::span<const std::uint8_t> bytes,
         protocol::SampleTime now,
@@ -37,6 +38,7 @@ public:
 private:
     ScanReader(
         protocol::Decoder decoder,
+        protocol::SampleClock clock,
         double max_distance_mm,
         std::uint32_t baud,
         LineQuality& line
@@ -46,6 +48,7 @@ private:
     void account_for(std::size_t bytes);
 
     protocol::Decoder decoder_;
+    protocol::SampleClock clock_;
     protocol::SweepAssembler assembler_;
     protocol::Decoded decoded_;
     std::chrono::nanoseconds per_byte_;

@@ -53,10 +53,13 @@ struct DecodeEvent {
 struct Decoded {
     std::vector<Sample> samples;
     std::vector<DecodeEvent> events;
+    /// How far off the samples' times may be (see SampleClock); 0: not known.
+    std::chrono::microseconds time_uncertainty{};
 
     void clear() {
         samples.clear();
         events.clear();
+        time_uncertainty = {};
     }
 };
 

@@ -58,6 +58,8 @@ struct Sweep {
     LineLosses losses;
     /// Counts the sweeps begun in the stream from 1, also those that were given up.
     std::uint64_t begun{};
+    /// How far off the samples' times may be (see SampleClock); 0: not known.
+    std::chrono::microseconds time_uncertainty{};
 
     /// Turns per second; 0 if the period is not known.
     [[nodiscard]] double rotation_hz() const {
@@ -71,6 +73,7 @@ struct Sweep {
 struct UnfinishedSweep {
     std::span<const Sample> samples;
     std::uint64_t begun{};
+    std::chrono::microseconds time_uncertainty{};  ///< of the samples so far
 };
 
 }  // namespace sweepcast::protocol

@@ -2,6 +2,7 @@
 // header.
 #include "driver/protocol/sweep_assembler.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace sweepcast::protocol {
@@ -31,6 +32,7 @@ bool in_line(std::int64_t step) {
 }  // namespace
 
 void SweepAssembler::push(const Decoded& decoded, std::vector<Sweep>& finished) {
+    pushed_uncertainty_ = decoded.time_uncertainty;
     std::size_t next_event = 0;
     const auto apply_events_up_to = [&](std::size_t sample) {
         for (; next_event < decoded.events.size() && decoded.events[next_event].at_sample <= sample;
@@ -144,7 +146,8 @@ void SweepAssembler::finish_sweep(const Sample& next, std::vector<Sweep>& finish
         return;
     }
     const auto period = next.time - samples_.front().time;
-    finished.push_back({std::exchange(samples_, std::exchange(spare_, {})), period, losses_, begun_}
+    finished.push_back(
+        {std::exchange(samples_, std::exchange(spare_, {})), period, losses_, begun_, uncertainty_}
     );
     losses_ = {};
 }
@@ -152,6 +155,7 @@ void SweepAssembler::finish_sweep(const Sample& next, std::vector<Sweep>& finish
 /// Begins a sweep at the present position, which is counted anew from heading 0.
 void SweepAssembler::begin_sweep() {
     samples_.clear();
+    uncertainty_ = {};
     ++begun_;
     state_ = State::gathering;
     position_ = *angle_;
@@ -176,6 +180,7 @@ void SweepAssembler::add(const Sample& sample) {
         return;
     }
     samples_.push_back(sample);
+    uncertainty_ = std::max(uncertainty_, pushed_uncertainty_);
 }
 
 }  // namespace sweepcast::protocol

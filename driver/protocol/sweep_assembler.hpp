@@ -35,6 +35,7 @@
 #include "driver/protocol/decoded.hpp"
 #include "driver/protocol/sweep.hpp"
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -54,7 +55,7 @@ public:
 
     /// The revolution under way, as far as the samples pushed are sure to belong to it; empty while
     /// there is none. Valid until the next push().
-    [[nodiscard]] UnfinishedSweep unfinished() const { return {samples_, begun_}; }
+    [[nodiscard]] UnfinishedSweep unfinished() const { return {samples_, begun_, uncertainty_}; }
 
     /// Takes back a sweep that is no longer needed, to use its memory again.
     void recycle(Sweep&& spent);
@@ -84,6 +85,8 @@ private:
     std::vector<Sample> samples_;      ///< of the sweep being gathered
     std::vector<Sample> spare_;        ///< memory of a spent sweep
     std::uint64_t begun_{};            ///< sweeps
+    std::chrono::microseconds pushed_uncertainty_{};  ///< of the samples being pushed
+    std::chrono::microseconds uncertainty_{};         ///< of those gathered
     LineLosses losses_;
 };
 
