@@ -20,6 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -115,6 +116,13 @@ bool from_own_page(const BeastRequest& request) {
     return api::same_origin(view(request[bhttp::field::origin]), view(request[bhttp::field::host]));
 }
 
+/// A connection that is to become a stream.
+struct Upgrade {
+    asio::ip::tcp::socket socket;
+    BeastRequest request;
+    stream::SessionSettings settings;
+};
+
 /// One connection, with the deadlines of its socket.
 class Session {
 public:
@@ -122,7 +130,8 @@ public:
         : stream_(std::move(socket))
         , context_(std::move(context)) {}
 
-    asio::awaitable<void> run() {
+    /// Answers requests to the connection's end, or until it is to become a stream.
+    asio::awaitable<std::unique_ptr<Upgrade>> run() {
         bool keep_alive = true;
         for (auto limit = std::chrono::seconds(first_request_limit); keep_alive;
              limit = next_request_limit) {
@@ -145,10 +154,15 @@ public:
             }
             auto request = parser.release();
             if (beast::websocket::is_upgrade(request)) {
-                const bool became_a_stream = co_await upgrade(std::move(request));
-                if (became_a_stream) {
-                    co_return;
+                auto settings = settings_or_error(request);
+                if (settings) {
+                    auto socket = stream_.release_socket();
+                    co_return std::make_unique<Upgrade>(
+                        Upgrade{std::move(socket), std::move(request), std::move(*settings)}
+                    );
                 }
+                auto refusal = to_beast(settings.error(), request.version(), false, false);
+                co_await write(std::move(refusal));
                 break;
             }
             // A command takes as long as the lidar takes to obey, which the device bounds.
@@ -158,6 +172,7 @@ public:
             keep_alive = written && request.keep_alive();
         }
         co_await linger();
+        co_return nullptr;
     }
 
 private:
@@ -247,29 +262,6 @@ private:
         co_return co_await context_.api.handle(std::move(request));
     }
 
-    /// Turns the connection into a stream. False if it stays an HTTP connection with an error on
-    /// it.
-    asio::awaitable<bool> upgrade(BeastRequest request) {
-        auto settings = settings_or_error(request);
-        if (!settings) {
-            auto refusal = to_beast(settings.error(), request.version(), false, false);
-            co_await write(std::move(refusal));
-            co_return false;
-        }
-        stream_.expires_never();  // from here on the WebSocket has deadlines of its own
-        const auto transport =
-            co_await stream::accept_websocket(stream_.release_socket(), std::move(request));
-        if (transport) {
-            co_await stream::serve_subscriber(
-                **transport,
-                context_.hub,
-                std::move(*settings),
-                context_.log
-            );
-        }
-        co_return true;
-    }
-
     Result<stream::SessionSettings, api::Response> settings_or_error(const BeastRequest& from) {
         try {
             return session_settings(from);
@@ -324,8 +316,25 @@ private:
 }  // namespace
 
 asio::awaitable<void> serve_http(asio::ip::tcp::socket socket, HttpContext context) {
-    Session session(std::move(socket), std::move(context));
-    co_await session.run();
+    // A stream may last for days: nothing of the HTTP connection stays with it.
+    auto session = std::make_unique<Session>(std::move(socket), context);
+    auto upgrade = co_await session->run();
+    session.reset();
+    if (!upgrade) {
+        co_return;
+    }
+    auto transport =
+        co_await stream::accept_websocket(std::move(upgrade->socket), std::move(upgrade->request));
+    auto settings = std::move(upgrade->settings);
+    upgrade.reset();
+    if (transport) {
+        co_await stream::serve_subscriber(
+            **transport,
+            context.hub,
+            std::move(settings),
+            context.log
+        );
+    }
 }
 
 }  // namespace sweepcast::http

@@ -22,8 +22,7 @@ asio::const_buffer buffer(std::span<const std::uint8_t> bytes) {
 
 Outbox::Outbox(tcp::socket socket, frame::Framing framing)
     : framing_(framing)
-    , socket_(std::move(socket))
-    , wake_(socket_.get_executor(), Clock::time_point::max()) {
+    , socket_(std::move(socket)) {
     error_code failed;
     socket_.non_blocking(true, failed);
     if (failed) {  // the client has gone already
@@ -38,10 +37,12 @@ Outbox::~Outbox() {
 void Outbox::set_up(
     MailboxLimits limits,
     TellMissed tell_missed,
+    Attend attend,
     std::chrono::milliseconds between_news
 ) {
     mailbox_ = Mailbox(limits);
     tell_missed_ = tell_missed;
+    attend_ = std::move(attend);
     between_news_ = between_news;
 }
 
@@ -75,7 +76,7 @@ void Outbox::close(std::string reason) {
     if (!std::exchange(closed_, true)) {
         end_reason_ = std::move(reason);
         mailbox_.discard_frames();
-        wake_.cancel();
+        call_attendant();
     }
 }
 
@@ -88,29 +89,28 @@ void Outbox::abort(error_code why) {
 asio::awaitable<void> Outbox::run() {
     struct Leave {
         Outbox& outbox;
-        ~Leave() { outbox.end_own(asio::error::operation_aborted); }
+        ~Leave() {
+            outbox.attended_ = false;
+            outbox.pause_ = nullptr;
+        }
     } leave{*this};
-    while (state_ != State::failed) {
+    while (state_ == State::blocked || (state_ == State::ready && !closed_ && news())) {
         error_code woken;
         if (state_ == State::blocked) {
             co_await socket_.async_wait(
                 tcp::socket::wait_write,
                 asio::redirect_error(asio::use_awaitable, woken)
             );
-            if (woken) {
-                fail(woken);
-            } else {
-                flush();
-            }
-            continue;
+        } else {  // what is new of its losses is not to be told yet
+            asio::steady_timer pause(socket_.get_executor(), told_at_ + between_news_);
+            pause_ = &pause;
+            co_await pause.async_wait(asio::redirect_error(asio::use_awaitable, woken));
+            pause_ = nullptr;
+            woken = {};  // something else to do, and then it is found above
         }
-        if (closed_ && state_ == State::ready) {
-            co_return;
-        }
-        const bool tell_soon = state_ == State::ready && news();
-        wake_.expires_at(tell_soon ? told_at_ + between_news_ : Clock::time_point::max());
-        co_await wake_.async_wait(asio::redirect_error(asio::use_awaitable, woken));
-        if (state_ == State::ready) {
+        if (woken) {
+            fail(woken);
+        } else if (state_ == State::ready || state_ == State::blocked) {
             flush();
         }
     }
@@ -230,7 +230,15 @@ void Outbox::end_own(error_code failed) {
 
 void Outbox::block() {
     state_ = State::blocked;
-    wake_.cancel();
+    call_attendant();
+}
+
+void Outbox::call_attendant() {
+    if (pause_ != nullptr) {
+        pause_->cancel();
+    } else if (attend_ && !std::exchange(attended_, true)) {
+        attend_();
+    }
 }
 
 void Outbox::fail(error_code why) {
@@ -245,7 +253,9 @@ void Outbox::fail(error_code why) {
     rest_ = {};
     mailbox_.discard_frames();
     end_own(why);
-    wake_.cancel();
+    if (pause_ != nullptr) {
+        pause_->cancel();
+    }
 }
 
 }  // namespace sweepcast::hub

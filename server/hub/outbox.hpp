@@ -25,18 +25,20 @@ struct OutboxCounts {
 /// Belongs to one worker's thread. Owns the client's socket, from which others may read. A message
 /// that has begun to go out is always finished before the next one.
 ///
-/// state    | meaning                               | a message that comes
-/// ---------|---------------------------------------|---------------------
-/// ready    | nothing waits                         | is sent
-/// blocked  | the socket takes no more; run() waits | waits
-/// silent   | the last bytes are out                | is forgotten
-/// failed   | the connection is broken              | is forgotten
+/// state    | meaning                  | a message that comes
+/// ---------|--------------------------|---------------------
+/// ready    | nothing waits            | is sent
+/// blocked  | the socket takes no more | waits
+/// silent   | the last bytes are out   | is forgotten
+/// failed   | the connection is broken | is forgotten
 class Outbox {
 public:
     /// Makes the message that tells a client what it missed.
     using TellMissed = frame::WireMessagePtr (*)(const OutboxCounts&);
     /// Called once when bytes of the transport's own are out, or with why they will not be.
     using Sent = std::function<void(boost::system::error_code)>;
+    /// Called when there is something to do that takes time: run() has to be started.
+    using Attend = std::function<void()>;
 
     Outbox(boost::asio::ip::tcp::socket socket, frame::Framing framing);
     /// No run() may be under way.
@@ -44,10 +46,12 @@ public:
     Outbox(const Outbox&) = delete;
     Outbox& operator=(const Outbox&) = delete;
 
-    /// How much may wait, and what a client that missed frames is told. Before the first message.
+    /// How much may wait, what a client that missed frames is told, and who runs run(). Before the
+    /// first message.
     void set_up(
         MailboxLimits limits,
         TellMissed tell_missed,
+        Attend attend,
         std::chrono::milliseconds between_news = std::chrono::seconds(1)
     );
 
@@ -70,17 +74,17 @@ public:
     /// stay until `sent` is called, which is not before this returns; one such write at a time.
     void write(std::span<const std::uint8_t> bytes, Last last, Sent sent);
 
-    /// No more comes in, and the frames that wait are forgotten; run() ends when the rest is out.
-    /// The first reason given stays.
+    /// No more comes in, and the frames that wait are forgotten. The first reason given stays.
     void close(std::string reason);
 
     /// Sends what waits, as the client takes it, and tells the client what it missed, at most once
-    /// in `between_news`. Ends when the outbox is closed and all is out, or the connection broke.
-    /// To be run once, for as long as messages come in; what has no deadline here has the kernel's:
-    /// a client that takes nothing is cut off (see set_stream_options).
+    /// in `between_news`. Ends when nothing waits any more, or the connection broke. One at a time,
+    /// when asked for. It has no deadline, but the kernel's: a client that takes nothing is cut off
+    /// (see set_stream_options).
     boost::asio::awaitable<void> run();
 
-    /// Whether the connection broke, and was not closed.
+    /// Whether it was closed and all is out that came before.
+    [[nodiscard]] bool is_finished() const { return closed_ && state_ == State::ready; }
     [[nodiscard]] bool failed() const { return state_ == State::failed; }
     /// Ends the connection at once.
     void abort(boost::system::error_code why);
@@ -105,11 +109,13 @@ private:
     void end_current();
     void end_own(boost::system::error_code failed);
     void block();
+    void call_attendant();
     void fail(boost::system::error_code why);
     [[nodiscard]] bool news() const { return mailbox_.frames_dropped() != dropped_told_; }
 
     State state_{State::ready};
     bool closed_{};
+    bool attended_{};
     frame::Framing framing_;
     Last own_last_{Last::no};
     std::uint64_t frames_sent_{};
@@ -127,7 +133,8 @@ private:
     std::chrono::milliseconds between_news_{};
     std::uint64_t dropped_told_{};
     Clock::time_point told_at_{};
-    boost::asio::steady_timer wake_;
+    Attend attend_;
+    boost::asio::steady_timer* pause_{};  // what run() waits for, if for that
     std::string end_reason_;
 };
 

@@ -6,11 +6,11 @@
 #include "server/version.hpp"
 
 #include <boost/asio/as_tuple.hpp>
+#include <boost/asio/buffer.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <boost/beast/core/buffers_to_string.hpp>
-#include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/websocket.hpp>
 
+#include <array>
 #include <chrono>
 #include <string>
 #include <utility>
@@ -57,13 +57,19 @@ public:
     hub::Outbox& outbox() override { return outbox_; }
 
     asio::awaitable<Result<std::string>> receive() override {
-        buffer_.clear();
-        const auto [failed, got] =
-            co_await ws_.async_read(buffer_, asio::as_tuple(asio::use_awaitable));
-        if (failed) {
-            co_return failed;
-        }
-        co_return beast::buffers_to_string(buffer_.cdata());
+        std::string message;  // of longest_client_message at most, which Beast sees to
+        do {
+            std::array<char, 128> chunk{};  // a Subscribe fits; every client keeps it
+            const auto [failed, got] = co_await ws_.async_read_some(
+                asio::buffer(chunk),
+                asio::as_tuple(asio::use_awaitable)
+            );
+            if (failed) {
+                co_return failed;
+            }
+            message.append(chunk.data(), got);
+        } while (!ws_.is_message_done());
+        co_return message;
     }
 
     asio::awaitable<void> close(const std::string& reason) override {
@@ -79,7 +85,6 @@ public:
 private:
     hub::Outbox outbox_;
     WsStream ws_;
-    beast::flat_buffer buffer_{longest_client_message};
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <boost/asio/use_future.hpp>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdint>
 #include <future>
 #include <utility>
@@ -35,17 +36,24 @@ public:
     ClientEnd(const ClientEnd&) = delete;
     ClientEnd& operator=(const ClientEnd&) = delete;
 
-    /// Starts the outbox.
-    void start() {
-        ended_ = boost::asio::co_spawn(context_, outbox.run(), boost::asio::use_future);
+    /// Sets the outbox up, and runs it when it asks for that.
+    void
+    start(MailboxLimits limits, Outbox::TellMissed missed, std::chrono::milliseconds between_news) {
+        const auto attend = [this] {
+            EXPECT_TRUE(ended()) << "asks twice";
+            ended_ = boost::asio::co_spawn(context_, outbox.run(), boost::asio::use_future);
+        };
+        outbox.set_up(limits, missed, attend, between_news);
     }
     /// Lets everything happen that can without more being read.
     void run() {
         context_.restart();
         context_.poll();
     }
+    /// Whether the outbox has nothing to do.
     [[nodiscard]] bool ended() const {
-        return ended_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+        return !ended_.valid() ||
+               ended_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
     }
 
     /// Reads at most so many bytes, if they are there.

@@ -8,17 +8,16 @@
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/co_spawn.hpp>
-#include <boost/asio/experimental/awaitable_operators.hpp>
 #include <boost/asio/this_coro.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/use_future.hpp>
 #include <gtest/gtest.h>
 
 #include <array>
+#include <chrono>
 #include <memory>
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
 namespace sweepcast::hub {
@@ -66,15 +65,16 @@ protected:
     /// Subscribes on a worker, tells so, and collects `count` messages.
     static asio::awaitable<std::vector<std::string>>
     collect(Hub& hub, std::size_t worker, std::size_t count, std::promise<void>& subscribed) {
-        using namespace asio::experimental::awaitable_operators;
         auto [client, gateway] = socket_pair(co_await asio::this_coro::executor);
         Outbox outbox(std::move(gateway), frame::Framing::delimited);
-        outbox.set_up({.frames = 1000}, nullptr);
+        async::TaskGroup attendants(co_await asio::this_coro::executor, no_failure);
+        outbox.set_up({.frames = 1000}, nullptr, [&] { attendants.spawn(outbox.run()); });
         LocalHub::Subscription subscription(hub.local(worker), outbox);
         subscription.set_wish(Wish{});
         subscribed.set_value();
-        const auto ended = co_await (read_texts(client, count) || outbox.run());
-        co_return std::get<0>(ended);
+        const auto texts = co_await read_texts(client, count);
+        co_await attendants.join(std::chrono::seconds(20));
+        co_return texts;
     }
 
     std::vector<std::unique_ptr<async::Worker>> workers;

@@ -62,9 +62,7 @@ class OutboxTest : public testing::Test {
 protected:
     /// Has the client not read, and the socket take no more than a part of frame 1.
     void stall(MailboxLimits limits = {}, std::chrono::milliseconds between_news = 1h) {
-        client.outbox.set_up(limits, missed, between_news);
-        client.start();
-        client.run();
+        client.start(limits, missed, between_news);
         client.outbox.push_frame(frame_of(1, beyond_any_buffer));
         client.run();
         ASSERT_GT(client.read(1), 0U) << "nothing of it has gone out";
@@ -187,7 +185,7 @@ TEST_F(OutboxTest, NothingFollowsTheLastBytesOfTheTransport) {
     outbox.push_control(control("late"));
     read_on();
     EXPECT_THAT(words(client.take()), ElementsAre("frame 1", "close"));
-    EXPECT_FALSE(client.ended()) << "the transport says when";
+    EXPECT_FALSE(outbox.is_finished()) << "the transport ends the connection";
 }
 
 TEST_F(OutboxTest, OnceClosedEndsWhenTheControlMessagesAreOut) {
@@ -203,16 +201,26 @@ TEST_F(OutboxTest, OnceClosedEndsWhenTheControlMessagesAreOut) {
     read_on();
     EXPECT_THAT(words(client.take()), ElementsAre("frame 1", "farewell"));
     EXPECT_TRUE(client.ended());
-    EXPECT_FALSE(outbox.failed());
+    EXPECT_TRUE(outbox.is_finished());
     EXPECT_EQ(outbox.end_reason(), "first reason");
 }
 
-TEST_F(OutboxTest, ClosingWithNothingWaitingEndsAtOnce) {
-    client.start();
-    client.run();
+TEST_F(OutboxTest, ClosingWithNothingWaitingIsFinishedAndCallsWhoEndsTheConnection) {
+    int calls = 0;
+    outbox.set_up({}, missed, [&] { ++calls; });
     outbox.close("over");
-    client.run();
-    EXPECT_TRUE(client.ended());
+    EXPECT_EQ(calls, 1);
+    EXPECT_TRUE(outbox.is_finished());
+}
+
+TEST_F(OutboxTest, NeedsNobodyWhileTheClientReads) {
+    outbox.set_up({}, missed, [] { FAIL() << "there is nothing to do"; });
+    for (std::uint64_t sequence = 1; sequence <= 100; ++sequence) {
+        outbox.push_frame(frame_of(sequence, 100));
+        outbox.push_control(control("state"));
+        client.read_all();
+    }
+    EXPECT_EQ(client.take().size(), 200U);
 }
 
 TEST_F(OutboxTest, ClosesWhenTooManyControlMessagesWait) {
@@ -236,8 +244,7 @@ TEST_F(OutboxTest, EndsWhenTheClientLeavesWhileItIsStalled) {
 }
 
 TEST_F(OutboxTest, EndsWhenAFrameFindsTheClientGone) {
-    client.start();
-    client.run();
+    client.start({}, missed, 1h);
     client.hang_up();
     outbox.push_frame(frame_of(1));
     outbox.push_frame(frame_of(2));
@@ -262,8 +269,7 @@ TEST_F(OutboxTest, AWriteThatCannotEndAnyMoreIsToldSo) {
 TEST_F(OutboxTest, WhateverAClientDoesItIsToldExactlyWhatItMissed) {
     std::mt19937 random(5);  // NOLINT(cert-msc51-cpp): the same in every run
     const auto one_in = [&random](unsigned many) { return random() % many == 0; };
-    outbox.set_up({.frames = 3}, missed, 0ms);
-    client.start();
+    client.start({.frames = 3}, missed, 0ms);
     std::uint64_t pushed = 0;
     std::uint64_t controls = 0;
     for (int step = 0; step < 5000; ++step) {

@@ -50,6 +50,8 @@ public:
     }
     asio::awaitable<void> close(const std::string& reason) override {
         closed_for = reason;
+        gone = true;
+        changed.notify();
         co_return;
     }
 
