@@ -116,8 +116,8 @@ Cost measure(const Scanner& scanner, const std::shared_ptr<const World>& world) 
         cost +=
             {samples,
              samples * seen.line_bytes_per_sample,
-             static_cast<double>(plain->message().size()),
-             static_cast<double>(dictionary->message().size()),
+             static_cast<double>(plain->framed(frame::Framing::delimited).size()),
+             static_cast<double>(dictionary->framed(frame::Framing::delimited).size()),
              static_cast<double>(plain->message().size() + websocket_header),
              static_cast<double>(laser_scan_bytes(captured))};
     }
