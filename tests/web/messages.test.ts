@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { create, fromBinary, toBinary } from "@bufbuild/protobuf";
+import { Column } from "../../web/gen/sweepcast/v1/scan_pb";
 import {
   ClientMessageSchema,
   Compression,
@@ -31,11 +32,13 @@ function frame(fields: { body: Uint8Array; compression?: number; rawSize?: numbe
   });
 }
 
-test("the subscription asks for one lidar's sweeps", () => {
+test("the subscription asks for one lidar's sectors, without what is not drawn", () => {
   const { message } = fromBinary(ClientMessageSchema, encodeSubscribe("8a5b9cf1"));
   assert.equal(message.case, "subscribe");
   assert.equal(message.value?.lidar, "8a5b9cf1");
-  assert.equal(message.value?.kind, Kind.SWEEP);
+  assert.equal(message.value?.kind, Kind.SECTOR);
+  assert.equal(message.value?.sectorDeg, 30);
+  assert.deepEqual(message.value?.leaveOut, [Column.FLAG, Column.TIME]);
   assert.equal(message.value?.compression, Compression.ZSTD);
 });
 

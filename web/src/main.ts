@@ -13,6 +13,7 @@ import { LidarList } from "./lidar_list";
 import { Lidar_State, Lidars, type Lidar } from "./lidars";
 import { encodeSubscribe, openFrame, type Frame, type ServerMessage } from "./messages";
 import { Panel } from "./panel";
+import { Revolution, type Seen } from "./revolution";
 import { Scene } from "./scene";
 import { formatSettings, parseSettings } from "./settings";
 import { sweepOf, type Sweep } from "./sweep";
@@ -63,6 +64,8 @@ class Page {
 
   private lidar: Lidar | undefined;
   private subscribed = "";
+  private revolution = new Revolution();
+  /// The latest that is complete.
   private sweep: Sweep | undefined;
   private sequence = 0n;
   private arrivedS = 0;
@@ -108,6 +111,7 @@ class Page {
   private connectionChanged(state: ConnectionState): void {
     if (state.kind !== "open") {
       this.subscribed = "";
+      this.revolution = new Revolution();
       this.fresh = false;
       this.counter.resume();
     }
@@ -172,6 +176,7 @@ class Page {
   }
 
   private clear(): void {
+    this.revolution = new Revolution();
     this.sweep = undefined;
     this.fresh = false;
     this.counter = new SequenceCounter();
@@ -182,23 +187,28 @@ class Page {
   private show(frame: Frame): void {
     // Frames of the lidar looked at before may still be under way.
     if (!this.lidar || this.lidars.find(frame.lidar)?.number !== this.lidar.number) return;
-    const qualityMeasured = this.sweep?.qualityMeasured;
+    let seen: Seen;
     try {
-      this.sweep = sweepOf(openFrame(frame));
+      seen = this.revolution.add(frame, sweepOf(openFrame(frame)));
     } catch (error) {
-      // Not drawn, and so counted as missed by the next.
-      console.warn(`sweep ${frame.sequence} is damaged:`, error);
+      // Not drawn, and its sweep is counted as missed by the next.
+      console.warn(`a sector of sweep ${frame.sequence} is damaged:`, error);
       return;
     }
-    const now = seconds();
+    if (seen.complete) this.take(seen.complete, frame.sequence);
+    this.scene.show(seen.drawn, seen.complete);
+  }
+
+  private take(sweep: Sweep, sequence: bigint): void {
     const wasLive = this.live();
-    this.arrivedS = now;
+    const qualityMeasured = this.sweep?.qualityMeasured;
+    this.sweep = sweep;
+    this.arrivedS = seconds();
     this.fresh = true;
-    this.sequence = frame.sequence;
-    this.counter.see(frame.sequence);
-    this.meter.see(this.sweep.startS);
-    this.scene.show(this.sweep);
-    if (this.sweep.qualityMeasured !== qualityMeasured) this.recolour();
+    this.sequence = sequence;
+    this.counter.see(sequence);
+    this.meter.see(sweep.startS);
+    if (sweep.qualityMeasured !== qualityMeasured) this.recolour();
     if (!wasLive) this.refresh();
   }
 

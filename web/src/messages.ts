@@ -1,7 +1,7 @@
 // The stream's messages as bytes: what the page says, and what it hears.
 import { create, fromBinary, toBinary } from "@bufbuild/protobuf";
 import { decompress } from "fzstd";
-import { ScanSchema, type Scan } from "../gen/sweepcast/v1/scan_pb";
+import { Column, ScanSchema, type Scan } from "../gen/sweepcast/v1/scan_pb";
 import {
   ClientMessageSchema,
   Compression,
@@ -25,9 +25,19 @@ export function decodeServerMessage(bytes: Uint8Array): ServerMessage {
   return fromBinary(ServerMessageSchema, bytes);
 }
 
-/// The message that asks for one lidar's sweeps. fzstd needs no dictionary and no wasm.
+/// How much of a turn is drawn at a time, in degrees: at ten turns a second, 120 times a second.
+const SECTOR_DEG = 30;
+
+/// The message that asks for one lidar's sectors, without what is not drawn. fzstd needs no wasm, and
+/// takes no dictionary.
 export function encodeSubscribe(lidar: string): Uint8Array {
-  const subscribe = { lidar, kind: Kind.SWEEP, compression: Compression.ZSTD };
+  const subscribe = {
+    lidar,
+    kind: Kind.SECTOR,
+    compression: Compression.ZSTD,
+    sectorDeg: SECTOR_DEG,
+    leaveOut: [Column.FLAG, Column.TIME],
+  };
   return toBinary(
     ClientMessageSchema,
     create(ClientMessageSchema, { message: { case: "subscribe", value: subscribe } }),

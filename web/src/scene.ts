@@ -87,12 +87,13 @@ export class Scene {
     return this.drawn_;
   }
 
-  /// Shows a sweep that has just arrived; undefined: none (another lidar was chosen).
-  show(sweep: Sweep | undefined): void {
+  /// Shows the newest echoes, which have just arrived; undefined: none (another lidar was chosen).
+  /// `complete` is the sweep that they complete, if any: the view is chosen to suit it.
+  show(sweep: Sweep | undefined, complete?: Sweep): void {
     this.sweep_ = sweep;
     this.line = sweep && follow(this.line, sweep.endTurn, sweep.periodS, seconds());
-    if (sweep) this.suit(sweep);
-    else {
+    if (complete) this.suit(complete);
+    if (!sweep) {
       this.drawn_ = undefined;
       this.following = true;
       this.range = 0;

@@ -1,4 +1,4 @@
-// A sweep as it is drawn: its echoes as points on the floor, in metres around the lidar.
+// A sweep, or a sector of one, as it is drawn: its echoes as points on the floor, in metres around the lidar.
 import type { Scan } from "./messages";
 import { decodeScan } from "./scan";
 
@@ -13,7 +13,9 @@ export interface Sweep {
   /// Samples measured, with an echo or without.
   samples: number;
   qualityMeasured: boolean;
-  /// Angle of the last sample in turns, [0, 1): where the lidar was looking when the sweep ended.
+  /// Angles of the first and the last sample in turns, [0, 1): where the lidar was looking when the
+  /// sweep began and ended.
+  startTurn: number;
   endTurn: number;
   /// When the first sample was taken, in seconds on a clock that never steps.
   startS: number;
@@ -42,6 +44,7 @@ export function sweepOf(scan: Scan): Sweep {
     y: new Float32Array(echoes),
     samples,
     qualityMeasured: columns.qualityMeasured,
+    startTurn: samples > 0 ? columns.angle[0]! / columns.angleUnitsPerTurn : 0,
     endTurn: samples > 0 ? columns.angle[samples - 1]! / columns.angleUnitsPerTurn : 0,
     startS: Number(scan.firstMonotonicNs) / 1e9,
     periodS: scan.periodUs / 1e6,
@@ -59,6 +62,53 @@ export function sweepOf(scan: Scan): Sweep {
     ++echo;
   }
   return sweep;
+}
+
+/// Parts, at least one, of a sweep or of several, one after the other, as one. What a sweep has but once
+/// is that of the last part; it began when the first part did.
+export function joined(parts: readonly Sweep[]): Sweep {
+  const first = parts[0]!;
+  const last = parts[parts.length - 1]!;
+  return {
+    ...last,
+    angleDeg: concatenated(
+      parts.map((part) => part.angleDeg),
+      Float32Array,
+    ),
+    distanceM: concatenated(
+      parts.map((part) => part.distanceM),
+      Float32Array,
+    ),
+    quality: concatenated(
+      parts.map((part) => part.quality),
+      Uint8Array,
+    ),
+    x: concatenated(
+      parts.map((part) => part.x),
+      Float32Array,
+    ),
+    y: concatenated(
+      parts.map((part) => part.y),
+      Float32Array,
+    ),
+    samples: parts.reduce((sum, part) => sum + part.samples, 0),
+    qualityMeasured: parts.some((part) => part.qualityMeasured),
+    startTurn: first.startTurn,
+    startS: first.startS,
+  };
+}
+
+function concatenated<Column extends Float32Array | Uint8Array>(
+  columns: readonly Column[],
+  make: new (length: number) => Column,
+): Column {
+  const all = new make(columns.reduce((sum, column) => sum + column.length, 0));
+  let at = 0;
+  for (const column of columns) {
+    all.set(column, at);
+    at += column.length;
+  }
+  return all;
 }
 
 /// The echo at `index`.
