@@ -20,8 +20,6 @@ struct DecodedScan {
     std::chrono::nanoseconds sample_duration{};
     /// When the first sample was taken, since the UNIX epoch; 0 if not known.
     std::chrono::nanoseconds first_unix{};
-    /// How far off the times may be; 0: not known.
-    std::chrono::microseconds time_uncertainty{};
     /// By how much the wall clock was set since the scan before; 0: it was not.
     std::chrono::nanoseconds clock_step{};
     /// Columns that are not there. Times are sample_duration apart then.

@@ -262,7 +262,7 @@ Result<DecodedScan> from_columns(const v1::Scan& scan) {
     decoded.answer_type = type;
     decoded.sample_duration = std::chrono::nanoseconds(scan.sample_period_ns());
     decoded.first_unix = std::chrono::nanoseconds(static_cast<std::int64_t>(scan.first_unix_ns()));
-    decoded.time_uncertainty = std::chrono::microseconds(scan.time_uncertainty_us());
+    decoded.sweep.time_uncertainty = std::chrono::microseconds(scan.time_uncertainty_us());
     decoded.clock_step = std::chrono::nanoseconds(scan.wall_clock_step_ns());
     decoded.without_quality = is_left_out(scan, v1::QUALITY);
     decoded.without_flags = is_left_out(scan, v1::FLAG);
