@@ -75,15 +75,16 @@ void write_differences(Samples samples, std::uint32_t per_turn, v1::Scan& scan) 
     }
 }
 
-void write_angles(const FrameContent& content, std::uint32_t wanted_units, v1::Scan& scan) {
-    if (wanted_units > 0) {
-        scan.set_angle_units_per_turn(wanted_units);
-        write_differences(content.samples, wanted_units, scan);
-        return;
-    }
-    const bool q6 = all_q6(content.samples);
-    scan.set_angle_units_per_turn(q6 ? q6_per_turn : q14_per_turn);
-    if (const auto ramps = q6 ? fit_ramps(content.samples, content.answer_type) : std::nullopt) {
+void write_angles(const FrameContent& content, const FrameFormat& format, v1::Scan& scan) {
+    const bool as_measured = format.angle_units_per_turn == 0;
+    const bool q6 = as_measured && all_q6(content.samples);
+    scan.set_angle_units_per_turn(
+        as_measured ? (q6 ? q6_per_turn : q14_per_turn) : format.angle_units_per_turn
+    );
+    // Parallax is that of the distance, which the reader must then have as it was measured.
+    const bool may_be_ramps = q6 && format.distance_unit_um == 0;
+    if (const auto ramps =
+            may_be_ramps ? fit_ramps(content.samples, content.answer_type) : std::nullopt) {
         write_ramps(*ramps, *scan.mutable_ramps());
     } else {
         write_differences(content.samples, scan.angle_units_per_turn(), scan);
@@ -200,7 +201,7 @@ void to_columns(const FrameContent& content, const FrameFormat& format, v1::Scan
         throw std::length_error("more samples than a scan can carry");
     }
     scan.Clear();
-    write_angles(content, format.angle_units_per_turn, scan);
+    write_angles(content, format, scan);
     write_distances(samples, format.distance_unit_um, scan);
     if (format.leave_out_quality) {
         scan.add_left_out(v1::QUALITY);

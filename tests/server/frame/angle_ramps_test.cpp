@@ -145,6 +145,21 @@ TEST(AngleRamps, ListTheSampleThatDoesNotFit) {
     EXPECT_EQ(from_columns(columns_of(samples, vector.type)).value().sweep.samples, samples);
 }
 
+TEST(AngleRamps, AreNotUsedWithCoarserDistancesFromWhichParallaxWouldComeOutWrong) {
+    const auto vector = test::load_vector("84_room");
+    auto samples = decode(vector);
+    samples.resize(1000);
+    FrameContent content;
+    content.samples = samples;
+    content.answer_type = vector.type;
+    v1::Scan scan;
+    to_columns(content, {.distance_unit_um = 100'000}, scan);
+    const auto decoded = from_columns(scan).value().sweep.samples;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        ASSERT_EQ(decoded[i].angle, samples[i].angle) << i;
+    }
+}
+
 TEST(AngleRamps, AreGivenUpWhereSamplesWereTakenOut) {
     const auto vector = test::load_vector("84_room");
     const auto samples = decode(vector);
