@@ -36,8 +36,18 @@ def check_headers(include: pathlib.Path) -> None:
                 raise SystemExit(f"{header.relative_to(include)} includes {name}, which is not installed")
 
 
+def check_readme(consumer: pathlib.Path) -> None:
+    """What the README shows is what is built here, but for the first line, which says what it is."""
+    readme = (consumer.parents[2] / "README.md").read_text(encoding="utf-8")
+    for name in ("CMakeLists.txt", "consumer.cpp"):
+        program = (consumer / name).read_text(encoding="utf-8").split("\n", 1)[1]
+        if program not in readme:
+            raise SystemExit(f"README.md shows another {name} than {consumer / name}")
+
+
 def main() -> None:
     cmake, build, consumer, compiler, flags = sys.argv[1:]
+    check_readme(pathlib.Path(consumer))
     with tempfile.TemporaryDirectory() as scratch:
         prefix, built = pathlib.Path(scratch) / "prefix", pathlib.Path(scratch) / "consumer"
         run(cmake, "--install", build, "--prefix", str(prefix))
