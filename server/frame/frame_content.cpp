@@ -18,4 +18,18 @@ FrameContent whole_sweep(const device::CapturedSweep& captured) {
     return content;
 }
 
+FrameContent sweep_under_way(std::string_view lidar, const device::SweepProgress& progress) {
+    FrameContent content;
+    content.lidar = lidar;
+    content.sequence = progress.sequence;
+    content.samples = progress.sweep.samples;
+    content.mode = progress.mode;
+    content.answer_type = progress.answer_type;
+    content.sample_duration = progress.sample_duration;
+    content.monotonic_to_unix = progress.monotonic_to_unix;
+    content.time_uncertainty = progress.sweep.time_uncertainty;
+    content.clock_step = progress.clock_step;
+    return content;
+}
+
 }  // namespace sweepcast::frame

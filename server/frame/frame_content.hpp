@@ -2,6 +2,7 @@
 #pragma once
 
 #include "driver/device/captured_sweep.hpp"
+#include "driver/device/sweep_progress.hpp"
 #include "driver/protocol/answer_type.hpp"
 #include "driver/protocol/sample.hpp"
 #include "driver/protocol/sweep.hpp"
@@ -43,6 +44,10 @@ struct FrameContent {
 
 /// All of a sweep.
 [[nodiscard]] FrameContent whole_sweep(const device::CapturedSweep& captured);
+
+/// All there is so far of one.
+[[nodiscard]] FrameContent
+sweep_under_way(std::string_view lidar, const device::SweepProgress& progress);
 
 /// What is done to the scan inside a frame.
 enum class Compression : std::uint8_t { zstd, none };

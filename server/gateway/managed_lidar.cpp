@@ -28,6 +28,7 @@ ManagedLidar::ManagedLidar(
     , ids_(ids)
     , memory_(memory)
     , log_(std::move(log))
+    , frames_(hub.variants(), place_.number)
     , stopped_(ended_.get_future())
     , device_(worker.executor(), place_.open_link, std::move(options), *this, log_) {}
 
@@ -113,19 +114,13 @@ void ManagedLidar::claim_id(const std::optional<protocol::DeviceInfo>& info) {
 void ManagedLidar::on_sweep(device::CapturedSweep sweep) {
     sweep.lidar = snapshot_->id;
     sweep.lidar_number = place_.number;
-    hub::SweepNews news;
-    news.lidar = place_.number;
-    for (const auto compression : {frame::Compression::zstd, frame::Compression::none}) {
-        if (hub_.wanted(compression)) {
-            news.frames[static_cast<std::size_t>(compression)] =
-                encoder_.encode(frame::whole_sweep(sweep), {.compression = compression});
-        }
-    }
-    news.sweep = std::make_shared<const device::CapturedSweep>(std::move(sweep));
-    hub_.publish(std::move(news));
+    auto frames = frames_.of(sweep);
+    auto shared = std::make_shared<const device::CapturedSweep>(std::move(sweep));
+    hub_.publish(hub::SweepNews{place_.number, std::move(shared), std::move(frames)});
 }
 
-void ManagedLidar::on_progress(const device::SweepProgress&) {
-}  // whole sweeps are all it publishes
+void ManagedLidar::on_progress(const device::SweepProgress& progress) {
+    hub_.publish(hub::SectorNews{place_.number, frames_.of(snapshot_->id, progress)});
+}
 
 }  // namespace sweepcast::gateway

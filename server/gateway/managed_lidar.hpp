@@ -4,10 +4,10 @@
 #include "driver/async/worker.hpp"
 #include "driver/device/device.hpp"
 #include "driver/link/link_url.hpp"
-#include "server/frame/frame_encoder.hpp"
 #include "server/gateway/lidar_ids.hpp"
 #include "server/gateway/lidar_memory.hpp"
 #include "server/hub/hub.hpp"
+#include "server/hub/lidar_frames.hpp"
 
 #include <spdlog/logger.h>
 
@@ -76,7 +76,7 @@ private:
     LidarIds& ids_;
     LidarMemory& memory_;
     std::shared_ptr<spdlog::logger> log_;
-    frame::FrameEncoder encoder_;
+    hub::LidarFrames frames_;
     hub::LidarSnapshotPtr snapshot_;
     std::string id_;
     std::string named_for_;  ///< the serial number that id_ comes from; empty: the port's name

@@ -289,13 +289,13 @@ private:
         settings.client = fmt::format("ws {}:{}", peer.address().to_string(), peer.port());
         settings.mailbox = context_.mailbox;
         if (!request.query.empty()) {
-            const auto wish = stream::wish_from_query(request.query, context_.hub);
-            if (!wish) {
-                const auto& refusal = wish.error();
+            auto order = stream::order_from_query(request.query, context_.hub);
+            if (!order) {
+                const auto& refusal = order.error();
                 const int status = refusal.code == "lidar_not_found" ? 404 : 400;
                 return api::error_response(status, refusal.code, refusal.message, refusal.hint);
             }
-            settings.wish = *wish;
+            settings.order = std::move(*order);
         }
         return settings;
     }

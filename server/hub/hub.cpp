@@ -8,27 +8,39 @@ namespace sweepcast::hub {
 
 namespace {
 
-/// A worker that has not taken this many sweeps is stuck; more would only pile up.
-constexpr std::uint32_t most_pending_sweeps = 256;
+/// A worker that has not taken this many sweeps and sectors is stuck; more would only pile up.
+constexpr std::uint32_t most_pending = 512;
 
 }  // namespace
 
 Hub::Hub(const std::vector<Executor>& workers) {
     for (const auto& executor : workers) {
-        shares_.push_back(std::make_unique<Share>(executor, demand_));
+        shares_.push_back(std::make_unique<Share>(executor, variants_));
     }
 }
 
 void Hub::publish(SweepNews news) {
+    publish_frames(std::move(news));
+}
+
+void Hub::publish(SectorNews news) {
+    if (!news.frames.empty()) {
+        publish_frames(std::move(news));
+    }
+}
+
+template <class News>
+void Hub::publish_frames(News news) {
+    const auto shared = std::make_shared<const News>(std::move(news));
     for (const auto& share : shares_) {
-        if (share->pending.load() >= most_pending_sweeps) {
-            ++sweeps_withheld_;
+        if (share->pending.load() >= most_pending) {
+            ++frames_withheld_;
             continue;
         }
         ++share->pending;
-        boost::asio::post(share->executor, [share = share.get(), news] {
+        boost::asio::post(share->executor, [share = share.get(), shared] {
             --share->pending;
-            share->local.deliver(news);
+            share->local.deliver(*shared);
         });
     }
 }
@@ -39,10 +51,6 @@ void Hub::publish(StateNews news) {
             share->local.deliver(news);
         });
     }
-}
-
-bool Hub::wanted(frame::Compression compression) const {
-    return demand_[static_cast<std::size_t>(compression)].load(std::memory_order_relaxed) > 0;
 }
 
 }  // namespace sweepcast::hub

@@ -23,29 +23,33 @@ public:
     explicit Hub(const std::vector<Executor>& workers);
 
     void publish(SweepNews news);
+    void publish(SectorNews news);
     void publish(StateNews news);
 
-    /// True if some subscriber wants frames so: only then are they worth encoding.
-    [[nodiscard]] bool wanted(frame::Compression compression) const;
+    /// What subscribers want: only that is worth encoding.
+    [[nodiscard]] const Variants& variants() const { return variants_; }
 
     /// The share of worker `index`; to be used on that worker's thread.
     [[nodiscard]] LocalHub& local(std::size_t index) { return shares_[index]->local; }
 
-    /// Sweeps not handed to a worker because it was too far behind.
-    [[nodiscard]] std::uint64_t sweeps_withheld() const { return sweeps_withheld_; }
+    /// Publications of sweeps and sectors not handed to a worker because it was too far behind.
+    [[nodiscard]] std::uint64_t frames_withheld() const { return frames_withheld_; }
 
 private:
     struct Share {
-        Share(Executor worker, Demand& demand) : executor(worker), local(demand) {}
+        Share(Executor worker, Variants& variants) : executor(worker), local(variants) {}
         Executor executor;
         LocalHub local;
-        /// Sweeps posted and not delivered yet.
+        /// Sweeps and sectors posted and not delivered yet.
         std::atomic<std::uint32_t> pending{};
     };
 
-    Demand demand_{};
+    template <class News>
+    void publish_frames(News news);
+
+    Variants variants_;
     std::vector<std::unique_ptr<Share>> shares_;
-    std::atomic<std::uint64_t> sweeps_withheld_{};
+    std::atomic<std::uint64_t> frames_withheld_{};
 };
 
 }  // namespace sweepcast::hub

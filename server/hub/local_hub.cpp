@@ -7,10 +7,6 @@ namespace sweepcast::hub {
 
 namespace {
 
-std::atomic<std::uint32_t>& counter(Demand& demand, const Wish& wish) {
-    return demand[static_cast<std::size_t>(wish.compression)];
-}
-
 /// Puts `value` at place `number` - 1, making room as needed.
 template <class T>
 void keep(std::vector<T>& list, std::uint32_t number, T value) {
@@ -18,6 +14,12 @@ void keep(std::vector<T>& list, std::uint32_t number, T value) {
         list.resize(number);
     }
     list[number - 1] = std::move(value);
+}
+
+/// The frame of this variant; null if there is none.
+const VariantFrame* find_frame(const SweepNews& news, const VariantPtr& variant) {
+    const auto found = std::ranges::find(news.frames, variant, &VariantFrame::variant);
+    return found != news.frames.end() ? &*found : nullptr;
 }
 
 }  // namespace
@@ -28,30 +30,137 @@ LocalHub::Subscription::Subscription(LocalHub& hub, Outbox& outbox)
     , place_(hub.subscriptions_.insert(hub.subscriptions_.end(), this)) {}
 
 LocalHub::Subscription::~Subscription() {
-    set_wish(std::nullopt);
+    leave();
     hub_.subscriptions_.erase(place_);
 }
 
-void LocalHub::Subscription::set_wish(std::optional<Wish> wish) {
-    if (wish_) {
-        --counter(hub_.demand_, *wish_);
+bool LocalHub::Subscription::set_wish(
+    const std::optional<Wish>& wish,
+    const frame::WireMessagePtr& answer
+) {
+    VariantPtr variant;
+    if (wish) {
+        variant = hub_.variants_.acquire(*wish, group_ != nullptr ? group_->variant : nullptr);
+        if (!variant) {
+            return false;
+        }
     }
-    wish_ = wish;
-    if (wish_) {
-        ++counter(hub_.demand_, *wish_);
+    leave();
+    outbox_.discard_frames();
+    if (variant) {
+        join(std::move(variant), wish->lidar);
+    }
+    if (answer) {
+        outbox_.push_control(answer);
+    }
+    send_latest();
+    return true;
+}
+
+void LocalHub::Subscription::join(VariantPtr variant, std::optional<std::uint32_t> lidar) {
+    lidar_ = lidar;
+    group_ = &hub_.group_of(variant);
+    auto& members = group_->members(lidar_);
+    seat_ = members.size();
+    members.push_back(this);
+}
+
+void LocalHub::Subscription::leave() {
+    if (group_ == nullptr) {
+        return;
+    }
+    auto& members = group_->members(lidar_);
+    members[seat_] = members.back();
+    members[seat_]->seat_ = seat_;
+    members.pop_back();
+    hub_.variants_.release(group_->variant, lidar_);
+    if (group_->is_empty()) {
+        hub_.groups_.remove_if([this](const Group& group) { return &group == group_; });
+    }
+    group_ = nullptr;
+}
+
+/// For one that has just joined: what the others got before.
+void LocalHub::Subscription::send_latest() {
+    if (group_ == nullptr || group_->variant->wish().kind != frame::Kind::sweep) {
+        return;
+    }
+    for (const auto& news : hub_.latest_) {
+        if (!news.sweep || (lidar_ && *lidar_ != news.lidar)) {
+            continue;
+        }
+        const auto* made = find_frame(news, group_->variant);
+        outbox_.push_frame(
+            made != nullptr ? made->message
+                            : group_->variant->belated_frame(*news.sweep, hub_.encoder_)
+        );
     }
 }
 
-void LocalHub::deliver(const SweepNews& news) {
-    keep(latest_, news.lidar, news.sweep);
-    for (auto* subscription : subscriptions_) {
-        const auto& wish = subscription->wish_;
-        if (!wish || (wish->lidar && *wish->lidar != news.lidar)) {
-            continue;
+LocalHub::Members& LocalHub::Group::members(const std::optional<std::uint32_t>& lidar) {
+    if (!lidar) {
+        return of_all;
+    }
+    if (of_one.size() < *lidar) {
+        of_one.resize(*lidar);
+    }
+    return of_one[*lidar - 1];
+}
+
+bool LocalHub::Group::wants(std::uint32_t lidar) const {
+    return !of_all.empty() || (lidar <= of_one.size() && !of_one[lidar - 1].empty());
+}
+
+bool LocalHub::Group::is_empty() const {
+    return of_all.empty() && std::ranges::all_of(of_one, &Members::empty);
+}
+
+void LocalHub::Group::push(std::uint32_t lidar, const frame::WireMessagePtr& message) const {
+    for (auto* subscription : of_all) {
+        subscription->outbox_.push_frame(message);
+    }
+    if (lidar <= of_one.size()) {
+        for (auto* subscription : of_one[lidar - 1]) {
+            subscription->outbox_.push_frame(message);
         }
-        // Null for one who subscribed after the sweep had been encoded: the next one will be there.
-        if (const auto& frame = news.frames[static_cast<std::size_t>(wish->compression)]) {
-            subscription->outbox_.push_frame(frame);
+    }
+}
+
+LocalHub::Group& LocalHub::group_of(const VariantPtr& variant) {
+    const auto known = std::ranges::find(groups_, variant, &Group::variant);
+    return known != groups_.end() ? *known : groups_.emplace_back(Group{variant});
+}
+
+const LocalHub::Group* LocalHub::find_group(const VariantPtr& variant) const {
+    const auto known = std::ranges::find(groups_, variant, &Group::variant);
+    return known != groups_.end() ? &*known : nullptr;
+}
+
+void LocalHub::deliver(const SweepNews& news) {
+    keep(latest_, news.lidar, news);
+    deliver(news.lidar, news.frames);
+    deliver_belated(news);
+}
+
+void LocalHub::deliver(const SectorNews& news) {
+    deliver(news.lidar, news.frames);
+}
+
+void LocalHub::deliver(std::uint32_t lidar, const std::vector<VariantFrame>& frames) const {
+    for (const auto& made : frames) {
+        const auto* group = made.is_new ? find_group(made.variant) : nullptr;
+        if (group != nullptr) {
+            group->push(lidar, made.message);
+        }
+    }
+}
+
+/// To those who wished for it when the lidar had already begun to make the frames of this sweep.
+void LocalHub::deliver_belated(const SweepNews& news) {
+    for (const auto& group : groups_) {
+        if (news.sweep && group.variant->wish().kind == frame::Kind::sweep &&
+            group.wants(news.lidar) && find_frame(news, group.variant) == nullptr) {
+            group.push(news.lidar, group.variant->belated_frame(*news.sweep, encoder_));
         }
     }
 }
@@ -83,15 +192,7 @@ LidarSnapshotPtr LocalHub::find(std::string_view id) const {
 }
 
 std::shared_ptr<const device::CapturedSweep> LocalHub::latest_sweep(std::uint32_t number) const {
-    return number >= 1 && number <= latest_.size() ? latest_[number - 1] : nullptr;
-}
-
-std::uint32_t LocalHub::subscribers() const {
-    std::uint32_t all = 0;
-    for (const auto& count : demand_) {
-        all += count.load(std::memory_order_relaxed);
-    }
-    return all;
+    return number >= 1 && number <= latest_.size() ? latest_[number - 1].sweep : nullptr;
 }
 
 }  // namespace sweepcast::hub

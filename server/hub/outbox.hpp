@@ -64,6 +64,9 @@ public:
         }
     }
 
+    /// Forgets the frames that wait: they are not wanted any more, and do not count as dropped.
+    void discard_frames() { mailbox_.discard_frames(); }
+
     /// Sends a message that must not be lost; it overtakes the frames that wait. If too many of
     /// them wait already, the outbox closes.
     void push_control(const frame::WireMessagePtr& message);

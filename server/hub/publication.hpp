@@ -1,28 +1,40 @@
-// What lidars publish: sweeps with their encoded variants, and news of their state.
+// What lidars publish: frames in every form that somebody wants, and news of their state.
 #pragma once
 
 #include "driver/device/captured_sweep.hpp"
-#include "server/frame/frame_encoder.hpp"
 #include "server/frame/wire_message.hpp"
+#include "server/frame/wish.hpp"
 #include "server/hub/lidar_snapshot.hpp"
+#include "server/hub/variant.hpp"
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace sweepcast::hub {
 
-/// A frame is made once for each of these, and only while somebody wants it.
-constexpr std::size_t compression_count = 2;
+/// A frame in one form.
+struct VariantFrame {
+    VariantPtr variant;
+    frame::WireMessagePtr message;
+    /// Not the one that was published before: that one only goes to who comes new, while the
+    /// variant leaves this sweep out.
+    bool is_new{true};
+};
 
-/// One sweep of one lidar.
+/// One sweep of one lidar: frames of it, and the last sectors of it. Who is to get a sweep in a
+/// form that is not among them gets it all the same.
 struct SweepNews {
     std::uint32_t lidar{};
     std::shared_ptr<const device::CapturedSweep> sweep;
-    /// By compression; null where nobody wanted it.
-    std::array<frame::WireMessagePtr, compression_count> frames;
+    std::vector<VariantFrame> frames;
+};
+
+/// Sectors of a sweep under way.
+struct SectorNews {
+    std::uint32_t lidar{};
+    std::vector<VariantFrame> frames;
 };
 
 /// A lidar's new state, and the message that tells it.
@@ -35,7 +47,7 @@ struct StateNews {
 struct Wish {
     /// The lidar's number; none: all lidars.
     std::optional<std::uint32_t> lidar;
-    frame::Compression compression{frame::Compression::zstd};
+    frame::Wish frames;
 };
 
 }  // namespace sweepcast::hub

@@ -1,11 +1,14 @@
 #include "server/stream/messages.hpp"
 
 #include "server/frame/dictionary.hpp"
+#include "server/frame/printable.hpp"
 #include "server/stream/lidar_message.hpp"
 #include "server/version.hpp"
 #include "sweepcast/v1/stream.pb.h"
 
 #include <fmt/format.h>
+
+#include <utility>
 
 namespace sweepcast::stream {
 
@@ -25,17 +28,32 @@ std::string known_ids(const hub::LocalHub& hub) {
     return ids.empty() ? "there is no lidar yet" : "the lidars are: " + ids;
 }
 
-/// The wish's lidar from an id; empty means all.
-Result<std::optional<std::uint32_t>, Refusal>
-lidar_number(std::string_view id, const hub::LocalHub& hub) {
-    if (id.empty()) {
-        return std::optional<std::uint32_t>{};
+/// The order in `subscribe`, which is hostile.
+Result<Order, Refusal> order_from(v1::Subscribe subscribe, const hub::LocalHub& hub) {
+    hub::Wish wish;
+    if (!subscribe.lidar().empty()) {
+        const auto lidar = hub.find(subscribe.lidar());
+        if (!lidar) {
+            return Refusal{
+                "lidar_not_found",
+                fmt::format("no lidar \"{}\"", subscribe.lidar()),
+                known_ids(hub),
+                subscribe.request()};
+        }
+        wish.lidar = lidar->number;
+        subscribe.set_lidar(frame::printable(lidar->id));
     }
-    const auto lidar = hub.find(id);
-    if (!lidar) {
-        return Refusal{"lidar_not_found", fmt::format("no lidar \"{}\"", id), known_ids(hub)};
+    auto frames = frame_wish(subscribe);
+    if (!frames) {
+        auto refusal = std::move(frames.error());
+        refusal.request = subscribe.request();
+        return refusal;
     }
-    return std::optional<std::uint32_t>{lidar->number};
+    wish.frames = std::move(*frames);
+    v1::ServerMessage answer;
+    const auto request = subscribe.request();
+    *answer.mutable_subscribed()->mutable_wish() = std::move(subscribe);
+    return Order{std::move(wish), wire(answer), request};
 }
 
 }  // namespace
@@ -74,6 +92,7 @@ frame::WireMessagePtr refusal_message(const Refusal& refusal) {
     message.mutable_error()->set_code(refusal.code);
     message.mutable_error()->set_message(refusal.message);
     message.mutable_error()->set_hint(refusal.hint);
+    message.mutable_error()->set_request(refusal.request);
     return wire(message);
 }
 
@@ -83,67 +102,39 @@ frame::WireMessagePtr closing_message(std::string_view reason) {
     return wire(message);
 }
 
-Result<hub::Wish, Refusal> wish_from_message(std::string_view bytes, const hub::LocalHub& hub) {
-    v1::ClientMessage message;
-    if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())) ||
-        !message.has_subscribe()) {
-        return Refusal{
-            "bad_message",
-            "this is not a ClientMessage with a subscribe in it",
-            "send sweepcast.v1.ClientMessage; on TCP with its length in front as a varint"};
-    }
-    const auto& subscribe = message.subscribe();
-    if (subscribe.kind() != v1::SWEEP) {
-        return Refusal{"unknown_kind", fmt::format("no kind {}", subscribe.kind()), "kinds: SWEEP"};
-    }
-    hub::Wish wish;
-    switch (subscribe.compression()) {
-    case v1::ZSTD:
-        wish.compression = frame::Compression::zstd;
-        break;
-    case v1::NONE:
-        wish.compression = frame::Compression::none;
-        break;
-    default:
-        return Refusal{
-            "unknown_compression",
-            fmt::format("no compression {}", subscribe.compression()),
-            "compressions: ZSTD, NONE"};
-    }
-    const auto number = lidar_number(subscribe.lidar(), hub);
-    if (!number) {
-        return number.error();
-    }
-    wish.lidar = *number;
-    return wish;
+Refusal too_many_wishes(const hub::LocalHub& hub, std::uint32_t request) {
+    const auto common = hub.variants().most_common();
+    return {
+        "too_many_wishes",
+        fmt::format("subscribers already have {} different wishes", hub::Variants::most),
+        fmt::format(
+            "wish for what others get, for example {}",
+            common ? query_text(common->wish()) : "kind=sweep"
+        ),
+        request};
 }
 
-Result<hub::Wish, Refusal> wish_from_query(const Query& query, const hub::LocalHub& hub) {
-    hub::Wish wish;
-    for (const auto& [key, value] : query) {
-        if (key == "lidar") {
-            const auto number = lidar_number(value, hub);
-            if (!number) {
-                return number.error();
-            }
-            wish.lidar = *number;
-        } else if (key == "kind" && value != "sweep") {
-            return Refusal{"unknown_kind", fmt::format("no kind \"{}\"", value), "kinds: sweep"};
-        } else if (key == "compression" && value == "none") {
-            wish.compression = frame::Compression::none;
-        } else if (key == "compression" && value != "zstd") {
-            return Refusal{
-                "unknown_compression",
-                fmt::format("no compression \"{}\"", value),
-                "compressions: zstd, none"};
-        } else if (key != "kind" && key != "compression") {
-            return Refusal{
-                "unknown_parameter",
-                fmt::format("no parameter \"{}\"", key),
-                "parameters: lidar, kind, compression"};
-        }
+Result<Order, Refusal> order_from_message(std::string_view bytes, const hub::LocalHub& hub) {
+    v1::ClientMessage message;
+    if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())) ||
+        message.message_case() == v1::ClientMessage::MESSAGE_NOT_SET) {
+        return Refusal{
+            "bad_message",
+            "this is not a ClientMessage with a subscribe or unsubscribe in it",
+            "send sweepcast.v1.ClientMessage; on TCP with its length in front as a varint"};
     }
-    return wish;
+    if (message.has_unsubscribe()) {
+        return Order{};
+    }
+    return order_from(std::move(*message.mutable_subscribe()), hub);
+}
+
+Result<Order, Refusal> order_from_query(const Query& query, const hub::LocalHub& hub) {
+    auto subscribe = subscribe_from_query(query);
+    if (!subscribe) {
+        return std::move(subscribe.error());
+    }
+    return order_from(std::move(*subscribe), hub);
 }
 
 }  // namespace sweepcast::stream

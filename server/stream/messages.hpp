@@ -7,11 +7,13 @@
 #include "server/hub/local_hub.hpp"
 #include "server/hub/outbox.hpp"
 #include "server/hub/publication.hpp"
+#include "server/stream/refusal.hpp"
+#include "server/stream/subscribe_wish.hpp"
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
 
 namespace sweepcast::stream {
 
@@ -20,11 +22,14 @@ constexpr std::uint32_t protocol_version = 1;
 /// Longest message a client may send; a Subscribe has some dozens of bytes.
 constexpr std::size_t longest_client_message = 4096;
 
-/// An answer to a client that asked for something impossible; `code` is stable, for programs.
-struct Refusal {
-    std::string code;
-    std::string message;
-    std::string hint;
+/// What a client asked for.
+struct Order {
+    /// None: states only.
+    std::optional<hub::Wish> wish;
+    /// What it is told before the first frame; may be null.
+    frame::WireMessagePtr answer;
+    /// As the client numbered it; 0: it did not.
+    std::uint32_t request{};
 };
 
 [[nodiscard]] frame::WireMessagePtr hello_message(const hub::LocalHub& hub);
@@ -33,17 +38,15 @@ struct Refusal {
 [[nodiscard]] frame::WireMessagePtr refusal_message(const Refusal& refusal);
 [[nodiscard]] frame::WireMessagePtr closing_message(std::string_view reason);
 
-/// Reads a ClientMessage. `bytes` is hostile.
-[[nodiscard]] Result<hub::Wish, Refusal>
-wish_from_message(std::string_view bytes, const hub::LocalHub& hub);
+/// The refusal of a wish that would be one too many of different ones.
+[[nodiscard]] Refusal too_many_wishes(const hub::LocalHub& hub, std::uint32_t request);
 
-/// The decoded parameters of a URL's query, in order.
-using Query = std::vector<std::pair<std::string, std::string>>;
+/// Reads a ClientMessage. `bytes` is hostile.
+[[nodiscard]] Result<Order, Refusal>
+order_from_message(std::string_view bytes, const hub::LocalHub& hub);
 
 /// Reads the query of a WebSocket URL, such as "lidar=A0E1C2D3&kind=sweep&compression=none". An
-/// empty or missing lidar means all. An unknown parameter is refused: a misspelt wish should not be
-/// taken for none.
-[[nodiscard]] Result<hub::Wish, Refusal>
-wish_from_query(const Query& query, const hub::LocalHub& hub);
+/// empty or missing lidar means all.
+[[nodiscard]] Result<Order, Refusal> order_from_query(const Query& query, const hub::LocalHub& hub);
 
 }  // namespace sweepcast::stream

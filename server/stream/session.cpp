@@ -31,6 +31,18 @@ asio::awaitable<void> attend(Transport& transport) {
     }
 }
 
+/// Delivers what is asked for from now on, or says why not.
+void obey(
+    const Order& order,
+    const hub::LocalHub& hub,
+    hub::LocalHub::Subscription& subscription,
+    hub::Outbox& outbox
+) {
+    if (!subscription.set_wish(order.wish, order.answer)) {
+        outbox.push_control(refusal_message(too_many_wishes(hub, order.request)));
+    }
+}
+
 /// Hears what the client wants. Returns why it ended.
 asio::awaitable<std::string> listen(
     Transport& transport,
@@ -53,11 +65,11 @@ asio::awaitable<std::string> listen(
         if (!bytes) {
             co_return bytes.error().message();
         }
-        const auto wish = wish_from_message(*bytes, hub);
-        if (wish) {
-            subscription.set_wish(*wish);
+        const auto order = order_from_message(*bytes, hub);
+        if (order) {
+            obey(*order, hub, subscription, outbox);
         } else {
-            outbox.push_control(refusal_message(wish.error()));
+            outbox.push_control(refusal_message(order.error()));
         }
     }
 }
@@ -72,7 +84,9 @@ asio::awaitable<std::string> talk(
     auto& outbox = transport.outbox();
     outbox.push_control(hello_message(hub));
     hub::LocalHub::Subscription subscription(hub, outbox);
-    subscription.set_wish(settings.wish);
+    if (settings.order) {
+        obey(*settings.order, hub, subscription, outbox);
+    }
     const auto read_error = co_await listen(transport, hub, subscription, attendants);
     co_return outbox.end_reason().empty() ? read_error : outbox.end_reason();
 }

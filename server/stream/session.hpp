@@ -3,6 +3,7 @@
 
 #include "server/hub/local_hub.hpp"
 #include "server/hub/mailbox.hpp"
+#include "server/stream/messages.hpp"
 #include "server/stream/transport.hpp"
 
 #include <boost/asio/awaitable.hpp>
@@ -18,7 +19,7 @@ struct SessionSettings {
     /// For the log: who this is, e.g. "tcp 127.0.0.1:53214".
     std::string client;
     /// What to deliver without being asked (a WebSocket URL may say so).
-    std::optional<hub::Wish> wish;
+    std::optional<Order> order;
     hub::MailboxLimits mailbox{};
 };
 

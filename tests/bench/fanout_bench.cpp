@@ -207,7 +207,7 @@ int run(const Options& options) {
     BareSender bare(options.workers);
 
     Way gateway;
-    gateway.publish = [&](auto frame) { server.publish(std::move(frame)); };
+    gateway.publish = [&](const auto& frame) { server.publish(frame); };
     gateway.group = clients.connect(Kind::websocket, server.http_port(), options.clients);
     Way loop;
     loop.publish = [&](const auto& frame) { bare.publish(frame); };

@@ -136,10 +136,12 @@ StreamServer::~StreamServer() {
     workers_.clear();
 }
 
-void StreamServer::publish(frame::WireMessagePtr frame) {
+void StreamServer::publish(const frame::WireMessagePtr& frame) {
     hub::SweepNews news;
     news.lidar = 1;
-    news.frames[0] = std::move(frame);
+    for (auto& variant : hub_->variants().wanted(news.lidar)) {
+        news.frames.push_back({std::move(variant), frame});
+    }
     hub_->publish(std::move(news));
 }
 

@@ -27,7 +27,7 @@ public:
     StreamServer& operator=(const StreamServer&) = delete;
 
     /// Gives a sweep of lidar 1 to all who want it.
-    void publish(frame::WireMessagePtr frame);
+    void publish(const frame::WireMessagePtr& frame);
 
     [[nodiscard]] std::uint16_t http_port() const { return http_->endpoint().port(); }
     [[nodiscard]] std::uint16_t tcp_port() const { return tcp_->endpoint().port(); }

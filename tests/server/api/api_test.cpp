@@ -120,8 +120,8 @@ protected:
     }
 
     asio::io_context context;
-    hub::Demand demand{};
-    hub::LocalHub hub{demand};
+    hub::Variants variants;
+    hub::LocalHub hub{variants};
     RecordingControl control;
     Api api{hub, control};
 };

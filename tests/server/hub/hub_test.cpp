@@ -70,7 +70,7 @@ protected:
         async::TaskGroup attendants(co_await asio::this_coro::executor, no_failure);
         outbox.set_up({.frames = 1000}, nullptr, [&] { attendants.spawn(outbox.run()); });
         LocalHub::Subscription subscription(hub.local(worker), outbox);
-        subscription.set_wish(Wish{});
+        EXPECT_TRUE(subscription.set_wish(Wish{}));
         subscribed.set_value();
         const auto texts = co_await read_texts(client, count);
         co_await attendants.join(std::chrono::seconds(20));
@@ -95,15 +95,16 @@ TEST_F(HubTest, EveryWorkersSubscriberGetsEverySweepInOrder) {
     for (auto& promise : subscribed) {
         promise.get_future().wait();
     }
-    EXPECT_TRUE(hub->wanted(frame::Compression::zstd));
-    EXPECT_FALSE(hub->wanted(frame::Compression::none));
+    const auto wanted = hub->variants().wanted(1);
+    ASSERT_EQ(wanted.size(), 1U);
+    EXPECT_EQ(hub->variants().subscribers(), worker_count);
 
     std::vector<std::string> expected;
     for (std::size_t i = 0; i < sweeps; ++i) {
         expected.push_back(std::to_string(i));
         SweepNews news;
         news.lidar = 1;
-        news.frames[0] = message(expected.back());
+        news.frames.push_back({wanted[0], message(expected.back())});
         hub->publish(std::move(news));
     }
     for (auto& texts : collected) {
@@ -117,7 +118,7 @@ TEST_F(HubTest, AWorkerThatIsStuckGetsNoMoreThanABoundOfSweeps) {
     for (int i = 0; i < 1000; ++i) {
         hub->publish(SweepNews{.lidar = 1, .sweep = {}, .frames = {}});
     }
-    EXPECT_GT(hub->sweeps_withheld(), 0U);
+    EXPECT_GT(hub->frames_withheld(), 0U);
     release.set_value();
 }
 

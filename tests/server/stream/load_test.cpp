@@ -5,6 +5,7 @@
 #include "driver/async/worker.hpp"
 #include "server/frame/message_framing.hpp"
 #include "server/hub/hub.hpp"
+#include "server/hub/lidar_frames.hpp"
 #include "server/stream/messages.hpp"
 #include "server/stream/session.hpp"
 #include "server/stream/tcp_transport.hpp"
@@ -49,12 +50,17 @@ constexpr int client_count = 24;
 constexpr int visits_before_the_end = 100;
 constexpr std::uint64_t frames_between_ticks = 50;
 
-frame::WireMessagePtr frame_of(std::uint32_t lidar, std::uint64_t sequence) {
-    v1::ServerMessage message;
-    message.mutable_frame()->set_lidar(std::to_string(lidar));
-    message.mutable_frame()->set_sequence(sequence);
-    message.mutable_frame()->set_body(std::string(2000, 'x'));
-    return std::make_shared<const frame::WireMessage>(message);
+device::CapturedSweep sweep_of(std::uint32_t lidar, std::uint64_t sequence) {
+    device::CapturedSweep captured;
+    captured.lidar = std::to_string(lidar);
+    captured.lidar_number = lidar;
+    captured.sequence = sequence;
+    captured.sweep.samples.resize(300);
+    for (auto& sample : captured.sweep.samples) {
+        sample.distance.raw =
+            4000 + static_cast<std::uint32_t>(&sample - captured.sweep.samples.data());
+    }
+    return captured;
 }
 
 /// What one client has of its stream; tells what is wrong with it.
@@ -141,17 +147,12 @@ protected:
 
     /// One lidar's thread: sweeps, and a change of state now and then.
     void publish_until_the_end(std::uint32_t lidar) {
+        hub::LidarFrames frames(hub_->variants(), lidar);
         for (std::uint64_t sequence = 1; !ends_; ++sequence) {
-            hub::SweepNews news;
-            news.lidar = lidar;
-            news.sweep = std::make_shared<const device::CapturedSweep>();
-            if (hub_->wanted(frame::Compression::zstd)) {
-                news.frames[0] = frame_of(lidar, sequence);
-            }
-            if (hub_->wanted(frame::Compression::none)) {
-                news.frames[1] = frame_of(lidar, sequence);
-            }
-            hub_->publish(std::move(news));
+            auto sweep = sweep_of(lidar, sequence);
+            auto made = frames.of(sweep);
+            auto shared = std::make_shared<const device::CapturedSweep>(std::move(sweep));
+            hub_->publish(hub::SweepNews{lidar, std::move(shared), std::move(made)});
             if (sequence % frames_between_ticks == 0) {
                 publish_state(lidar);
                 asio::post(clients_, [this] { tick_.notify(); });

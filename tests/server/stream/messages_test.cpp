@@ -26,8 +26,8 @@ class MessagesTest : public testing::Test {
 protected:
     MessagesTest() { add_known_lidar(hub); }
 
-    hub::Demand demand{};
-    hub::LocalHub hub{demand};
+    hub::Variants variants;
+    hub::LocalHub hub{variants};
 };
 
 TEST_F(MessagesTest, HelloTellsVersionLidarsAndDictionaries) {
@@ -85,80 +85,62 @@ TEST_F(MessagesTest, ASubscribeBecomesAWish) {
     v1::ClientMessage message;
     message.mutable_subscribe()->set_lidar("A0E1C2D3");
     message.mutable_subscribe()->set_compression(v1::NONE);
-    const auto wish = wish_from_message(message.SerializeAsString(), hub);
-    ASSERT_TRUE(wish);
-    EXPECT_EQ(wish->lidar, 1U);
-    EXPECT_EQ(wish->compression, frame::Compression::none);
+    message.mutable_subscribe()->set_request(5);
+    const auto order = order_from_message(message.SerializeAsString(), hub);
+    ASSERT_TRUE(order);
+    ASSERT_TRUE(order->wish);
+    EXPECT_EQ(order->wish->lidar, 1U);
+    EXPECT_EQ(order->wish->frames.format.compression, frame::Compression::none);
+    EXPECT_EQ(order->request, 5U);
+    EXPECT_EQ(parse(order->answer).subscribed().wish().request(), 5U);
 }
 
 TEST_F(MessagesTest, ASubscribeWithoutALidarWantsAll) {
     v1::ClientMessage message;
     message.mutable_subscribe();
-    const auto wish = wish_from_message(message.SerializeAsString(), hub);
-    ASSERT_TRUE(wish);
-    EXPECT_FALSE(wish->lidar);
+    const auto order = order_from_message(message.SerializeAsString(), hub);
+    ASSERT_TRUE(order);
+    EXPECT_FALSE(order->wish->lidar);
+    EXPECT_EQ(order->wish->frames, frame::Wish{});
+}
+
+TEST_F(MessagesTest, AnUnsubscribeWantsNothing) {
+    v1::ClientMessage message;
+    message.mutable_unsubscribe();
+    const auto order = order_from_message(message.SerializeAsString(), hub);
+    ASSERT_TRUE(order);
+    EXPECT_FALSE(order->wish);
+    EXPECT_FALSE(order->answer);
 }
 
 TEST_F(MessagesTest, AnUnknownLidarIsRefusedAndTheKnownOnesAreNamed) {
     v1::ClientMessage message;
     message.mutable_subscribe()->set_lidar("nobody");
-    const auto wish = wish_from_message(message.SerializeAsString(), hub);
-    ASSERT_FALSE(wish);
-    EXPECT_EQ(wish.error().code, "lidar_not_found");
-    EXPECT_THAT(wish.error().hint, HasSubstr("A0E1C2D3"));
+    message.mutable_subscribe()->set_request(9);
+    const auto order = order_from_message(message.SerializeAsString(), hub);
+    ASSERT_FALSE(order);
+    EXPECT_EQ(order.error().code, "lidar_not_found");
+    EXPECT_THAT(order.error().hint, HasSubstr("A0E1C2D3"));
+    EXPECT_EQ(parse(refusal_message(order.error())).error().request(), 9U);
 }
 
 TEST_F(MessagesTest, BytesThatAreNoClientMessageAreRefused) {
     for (const std::string bytes : {"", "GET / HTTP/1.1", "\xff\xff\xff\xff"}) {
-        const auto wish = wish_from_message(bytes, hub);
-        ASSERT_FALSE(wish);
-        EXPECT_EQ(wish.error().code, "bad_message");
+        const auto order = order_from_message(bytes, hub);
+        ASSERT_FALSE(order);
+        EXPECT_EQ(order.error().code, "bad_message");
     }
 }
 
-TEST_F(MessagesTest, KindsAndCompressionsOfALaterVersionAreRefused) {
-    v1::ClientMessage message;
-    message.mutable_subscribe()->set_kind(static_cast<v1::Kind>(99));
-    EXPECT_EQ(wish_from_message(message.SerializeAsString(), hub).error().code, "unknown_kind");
-    message.mutable_subscribe()->set_kind(v1::SWEEP);
-    message.mutable_subscribe()->set_compression(static_cast<v1::Compression>(99));
-    EXPECT_EQ(
-        wish_from_message(message.SerializeAsString(), hub).error().code,
-        "unknown_compression"
-    );
-}
-
 TEST_F(MessagesTest, AQueryBecomesAWish) {
-    const auto wish =
-        wish_from_query({{"lidar", "ttyUSB0"}, {"kind", "sweep"}, {"compression", "none"}}, hub);
-    ASSERT_TRUE(wish);
-    EXPECT_EQ(wish->lidar, 1U);
-    EXPECT_EQ(wish->compression, frame::Compression::none);
+    const auto order =
+        order_from_query({{"lidar", "ttyUSB0"}, {"kind", "sweep"}, {"compression", "none"}}, hub);
+    ASSERT_TRUE(order);
+    EXPECT_EQ(order->wish->lidar, 1U);
+    EXPECT_EQ(order->wish->frames.format.compression, frame::Compression::none);
+    EXPECT_EQ(parse(order->answer).subscribed().wish().lidar(), "A0E1C2D3");
+    EXPECT_EQ(order_from_query({{"lidar", "nobody"}}, hub).error().code, "lidar_not_found");
 }
-
-struct QueryCase {
-    std::string key, value, code;
-};
-
-class BadQueryTest : public MessagesTest, public testing::WithParamInterface<QueryCase> {};
-
-TEST_P(BadQueryTest, IsRefused) {
-    const auto wish = wish_from_query({{GetParam().key, GetParam().value}}, hub);
-    ASSERT_FALSE(wish);
-    EXPECT_EQ(wish.error().code, GetParam().code);
-    EXPECT_NE(wish.error().hint, "");
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Parameters,
-    BadQueryTest,
-    testing::Values(
-        QueryCase{"lidar", "nobody", "lidar_not_found"},
-        QueryCase{"kind", "sector", "unknown_kind"},
-        QueryCase{"compression", "gzip", "unknown_compression"},
-        QueryCase{"compresion", "none", "unknown_parameter"}
-    )
-);
 
 }  // namespace
 }  // namespace sweepcast::stream

@@ -3,6 +3,7 @@
 
 #include "driver/async/notifier.hpp"
 #include "server/frame/error.hpp"
+#include "server/hub/lidar_frames.hpp"
 #include "sweepcast/v1/stream.pb.h"
 #include "tests/server/hub/client_end.hpp"
 #include "tests/server/stream/known_lidar.hpp"
@@ -96,12 +97,16 @@ protected:
     }
     void publish(int sweeps) {
         for (int i = 0; i < sweeps; ++i) {
-            v1::ServerMessage message;
-            message.mutable_frame()->set_sequence(++sequence);
-            hub::SweepNews news;
-            news.lidar = 1;
-            news.frames[0] = std::make_shared<const frame::WireMessage>(message);
-            hub.deliver(news);
+            device::CapturedSweep captured;
+            captured.sweep.samples.resize(3);
+            captured.lidar = "A0E1C2D3";
+            captured.lidar_number = 1;
+            captured.sequence = ++sequence;
+            auto made = frames.of(captured);
+            hub.deliver(hub::SweepNews{
+                1,
+                std::make_shared<const device::CapturedSweep>(std::move(captured)),
+                std::move(made)});
         }
         run();
     }
@@ -110,8 +115,9 @@ protected:
     }
 
     asio::io_context context;
-    hub::Demand demand{};
-    hub::LocalHub hub{demand};
+    hub::Variants variants;
+    hub::LocalHub hub{variants};
+    hub::LidarFrames frames{variants, 1};
     MemoryTransport transport{context};
     SessionSettings settings;
     std::shared_ptr<spdlog::logger> log = std::make_shared<spdlog::logger>("test");
@@ -126,22 +132,60 @@ TEST_F(SessionTest, GreetsFirst) {
     EXPECT_TRUE(messages[0].has_hello());
 }
 
-TEST_F(SessionTest, DeliversWhatIsSubscribedTo) {
+TEST_F(SessionTest, AnswersASubscribeAndDeliversTheLatestAndWhatFollows) {
     serve();
-    publish(1);
+    publish(2);
     EXPECT_EQ(received().size(), 1U);
     v1::ClientMessage subscribe;
-    subscribe.mutable_subscribe()->set_lidar("A0E1C2D3");
+    subscribe.mutable_subscribe()->set_lidar("ttyUSB0");
+    subscribe.mutable_subscribe()->set_request(17);
     say(subscribe);
     publish(2);
     const auto messages = received();
+    ASSERT_EQ(messages.size(), 4U);
+    ASSERT_TRUE(messages[0].has_subscribed());
+    EXPECT_EQ(messages[0].subscribed().wish().request(), 17U);
+    EXPECT_EQ(messages[0].subscribed().wish().lidar(), "A0E1C2D3");
+    EXPECT_EQ(messages[1].frame().sequence(), 2U);
+    EXPECT_EQ(messages[2].frame().sequence(), 3U);
+    EXPECT_EQ(messages[3].frame().sequence(), 4U);
+}
+
+TEST_F(SessionTest, AnUnsubscribeEndsTheFrames) {
+    settings.order = Order{hub::Wish{}, nullptr};
+    serve();
+    publish(1);
+    EXPECT_EQ(received().size(), 2U);
+    v1::ClientMessage unsubscribe;
+    unsubscribe.mutable_unsubscribe();
+    say(unsubscribe);
+    publish(2);
+    EXPECT_EQ(received().size(), 0U);
+    EXPECT_EQ(hub.subscribers(), 0U);
+    EXPECT_FALSE(ended());
+}
+
+TEST_F(SessionTest, RefusesOneWishTooManyAndNamesOneThatIsInUse) {
+    std::vector<hub::VariantPtr> taken;
+    for (std::uint32_t i = 0; i < hub::Variants::most; ++i) {
+        hub::Wish wish;
+        wish.frames.every_nth = 2 + i;
+        taken.push_back(variants.acquire(wish));
+    }
+    serve();
+    v1::ClientMessage subscribe;
+    subscribe.mutable_subscribe()->set_request(3);
+    say(subscribe);
+    const auto messages = received();
     ASSERT_EQ(messages.size(), 2U);
-    EXPECT_EQ(messages[0].frame().sequence(), 2U);
-    EXPECT_EQ(messages[1].frame().sequence(), 3U);
+    EXPECT_EQ(messages[1].error().code(), "too_many_wishes");
+    EXPECT_EQ(messages[1].error().request(), 3U);
+    EXPECT_THAT(messages[1].error().hint(), testing::HasSubstr("kind=sweep&every_nth="));
+    EXPECT_FALSE(ended());
 }
 
 TEST_F(SessionTest, DeliversAtOnceWhenTheWishCameWithTheConnection) {
-    settings.wish = hub::Wish{};
+    settings.order = Order{hub::Wish{}, nullptr};
     serve();
     publish(1);
     const auto messages = received();
@@ -169,7 +213,7 @@ TEST_F(SessionTest, RefusesAnImpossibleWishAndGoesOn) {
 }
 
 TEST_F(SessionTest, TellsAClientThatDidNotReadWhatItMissed) {
-    settings.wish = hub::Wish{};
+    settings.order = Order{hub::Wish{}, nullptr};
     settings.mailbox.frames = 2;
     serve();
     publish(1000);  // more than the kernel takes
@@ -190,7 +234,7 @@ TEST_F(SessionTest, TellsAClientThatDidNotReadWhatItMissed) {
 }
 
 TEST_F(SessionTest, EndsWhenTheClientGoes) {
-    settings.wish = hub::Wish{};
+    settings.order = Order{hub::Wish{}, nullptr};
     serve();
     EXPECT_EQ(hub.subscribers(), 1U);
     transport.gone = true;
