@@ -55,6 +55,9 @@ Response method_not_allowed(const Request& request, const std::string& allowed) 
 }
 
 Response error_response(const Problem& problem) {
+    if (problem.code == boost::system::errc::operation_not_supported) {
+        return error_response(409, "controlled_elsewhere", problem.cause, problem.hint);
+    }
     const auto* known = std::ranges::find_if(mappings, [&](const Mapping& mapping) {
         return problem.code == mapping.from;
     });

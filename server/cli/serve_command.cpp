@@ -146,8 +146,9 @@ void add_serve_command(CLI::App& app, int& exit_code) {
         "--lidar",
         arguments->lidars,
         "A lidar: a serial port (/dev/ttyUSB0), tcp://HOST[:PORT], udp://HOST[:PORT], or "
-        "virtual:MODEL[?world=FILE] for a virtual one; each with ?name=ID&mode=NAME&hz=SPEED if "
-        "wanted. Repeatable. Without it every RPLIDAR found on a USB port is taken, and if there "
+        "virtual:MODEL[?world=FILE] for a virtual one, each with ?name=ID&mode=NAME&hz=SPEED if "
+        "wanted; or another gateway's: sweepcast://HOST[:PORT][/ID][?name=ID]. Repeatable. Without "
+        "it every RPLIDAR found on a USB port is taken, and if there "
         "is "
         "none a virtual one is started"
     );
@@ -195,7 +196,11 @@ void add_serve_command(CLI::App& app, int& exit_code) {
         "  sweepcast serve --lidar 'udp://192.168.11.2?hz=10' a network lidar, at 10 turns a "
         "second\n"
         "  sweepcast serve --lidar virtual:a1m8 --http 0.0.0.0:8080\n"
-        "                                                     a virtual one, open to the network"
+        "                                                     a virtual one, open to the network\n"
+        "  sweepcast serve --lidar sweepcast://robot:8081/A0E1C2D3\n"
+        "                                                     another gateway's lidar, once over "
+        "the "
+        "network"
     );
     command.callback([arguments, &exit_code] { exit_code = serve(*arguments); });
 }

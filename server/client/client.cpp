@@ -26,6 +26,8 @@ using namespace asio::experimental::awaitable_operators;
 namespace {
 
 constexpr std::uint32_t spoken_version = 1;
+/// As many as make the wait the longest, and more.
+constexpr std::uint32_t most_failures = 1000;
 
 /// What is wrong if a connection ends by `failed`.
 Problem ended_by(const error_code& failed, const std::string& reason) {
@@ -80,7 +82,8 @@ struct Client::Impl {
     std::uint64_t bytes_before{};  ///< of connections that are gone
     std::string closing;           ///< why the gateway is about to close the connection
     std::string refused_lidar;     ///< that the wish waits for
-    bool wish_was_set{};           ///< by set_wish()
+    std::optional<Problem> given_up;
+    bool wish_was_set{};  ///< by set_wish()
     bool ever_connected{};
     bool cancelled{};
     bool sending{};
@@ -108,6 +111,13 @@ asio::awaitable<void> Client::set_wish(std::optional<v1::Subscribe> wish) {
     impl_->refused_lidar.clear();
     impl_->missed = {};
     co_await impl_->send_wish();
+}
+
+void Client::give_up(Problem why) {
+    if (impl_->connection) {
+        impl_->given_up = std::move(why);
+        impl_->connection->close();
+    }
 }
 
 void Client::cancel() {
@@ -221,7 +231,7 @@ asio::awaitable<Result<Event, Problem>> Client::Impl::receive() {
             co_return cancelled_by_user();
         }
         if (!message) {
-            co_return lost(ended_by(message.error(), closing));
+            co_return lost(given_up ? *given_up : ended_by(message.error(), closing));
         }
         auto event = take(**message);
         if (!event) {
@@ -250,7 +260,10 @@ Result<Event, Problem> Client::Impl::lost(Problem why) {
     // One that came and went at once is a failure as well.
     const bool had_held = connected_at && Clock::now() - *connected_at > options.backoff.longest;
     connected_at.reset();
-    failures = had_held ? 1 : std::min(failures + 1, 1000U);
+    failures = had_held ? 1 : std::min(failures + 1, most_failures);
+    if (std::exchange(given_up, std::nullopt)) {
+        failures = most_failures;
+    }
     const double luck = std::uniform_real_distribution<double>(0, 1)(random);
     const auto retry_in = wait_after(failures, options.backoff, luck);
     next_try = Clock::now() + retry_in;

@@ -57,6 +57,10 @@ public:
     /// refused, and repeated by itself when the lidar appears.
     boost::asio::awaitable<void> set_wish(std::optional<v1::Subscribe> wish);
 
+    /// Gives the connection up for what came over it, as if it had ended by that; it is tried again
+    /// after the longest wait.
+    void give_up(Problem why);
+
     /// Ends the connection and a next() under way; for good.
     void cancel();
 

@@ -1,7 +1,8 @@
 #include "server/gateway/gateway.hpp"
 
-#include "driver/device/advice.hpp"
 #include "driver/link/open_link.hpp"
+#include "server/gateway/managed_lidar.hpp"
+#include "server/gateway/remote_lidar.hpp"
 #include "server/http/http_session.hpp"
 #include "server/net/endpoint.hpp"
 #include "server/stream/messages.hpp"
@@ -60,8 +61,8 @@ std::string describe_peer(const tcp::socket& socket) {
 
 /// Has a lidar obey on its own worker; what it answers is the state it is in then.
 asio::awaitable<api::LidarControl::Outcome>
-command(ManagedLidar& lidar, asio::awaitable<Result<void, Problem>> order) {
-    auto obey = [](ManagedLidar& obeying, asio::awaitable<Result<void, Problem>> what
+command(GatewayLidar& lidar, asio::awaitable<Result<void, Problem>> order) {
+    auto obey = [](GatewayLidar& obeying, asio::awaitable<Result<void, Problem>> what
                 ) -> asio::awaitable<api::LidarControl::Outcome> {
         const auto done = co_await std::move(what);
         if (!done) {
@@ -70,23 +71,6 @@ command(ManagedLidar& lidar, asio::awaitable<Result<void, Problem>> order) {
         co_return obeying.snapshot();
     };
     co_return co_await async::run_on(lidar.worker().executor(), obey(lidar, std::move(order)));
-}
-
-/// Changes what is given, or nothing if the lidar refuses a part of it.
-asio::awaitable<Result<void, Problem>> apply(device::Device& device, api::LidarUpdate update) {
-    const auto& modes = device.state().modes;
-    if (update.mode && !modes.empty() && device::find_mode(modes, *update.mode) == nullptr) {
-        co_return device::unknown_mode(*update.mode, modes);
-    }
-    if (update.speed_hz) {
-        if (auto set = device.set_speed(*update.speed_hz); !set) {
-            co_return set.error();
-        }
-    }
-    if (update.mode) {
-        co_return co_await device.set_mode(*update.mode);
-    }
-    co_return Result<void, Problem>{};
 }
 
 asio::awaitable<void> serve_tcp(
@@ -192,6 +176,12 @@ Result<void, Problem> Gateway::add_lidars(const MakeLogger& make_logger) {
     }
     for (const auto& url : options_.lidars) {
         const auto number = static_cast<std::uint32_t>(lidars_.size() + 1);
+        if (const auto* remote = std::get_if<RemoteLidarUrl>(&url.where)) {
+            if (auto added = add_remote(url, *remote, make_logger); !added) {
+                return added.error();
+            }
+            continue;
+        }
         auto where = place(url, number, make_logger);
         if (!where) {
             return where.error();
@@ -208,6 +198,40 @@ Result<void, Problem> Gateway::add_lidars(const MakeLogger& make_logger) {
             std::move(log)
         ));
     }
+    return {};
+}
+
+/// Whether `remote` is this gateway's own stream, as far as its URL tells.
+bool Gateway::is_own(const RemoteLidarUrl& remote) const {
+    error_code no_address;
+    const auto address = asio::ip::make_address(remote.host, no_address);
+    const bool is_here = remote.host == "localhost" ||
+                         (!no_address && (address.is_loopback() || address.is_unspecified() ||
+                                          address == tcp_->endpoint().address()));
+    return is_here && remote.port == std::to_string(tcp_->endpoint().port());
+}
+
+Result<void, Problem> Gateway::add_remote(
+    const LidarUrl& url,
+    const RemoteLidarUrl& remote,
+    const MakeLogger& make_logger
+) {
+    if (is_own(remote)) {
+        return Problem{
+            make_error_code(boost::system::errc::too_many_symbolic_link_levels),
+            fmt::format("lidar \"{}\" is at this gateway's own stream", url.text),
+            "name another gateway, or the lidar's port"};
+    }
+    const auto number = static_cast<std::uint32_t>(lidars_.size() + 1);
+    const auto& wished = url.name.empty() ? port_name(url) : url.name;
+    const auto name = ids_.claim(number, wished, wished);
+    lidars_.push_back(std::make_unique<RemoteLidar>(
+        RemotePlace{number, url.text.substr(0, url.text.find('?')), url.name, name, remote},
+        *workers_[lidars_.size() % workers_.size()],
+        *hub_,
+        ids_,
+        make_logger("lidar " + name)
+    ));
     return {};
 }
 
@@ -317,23 +341,23 @@ void Gateway::end_sessions() {
 
 asio::awaitable<api::LidarControl::Outcome> Gateway::start(std::uint32_t lidar, std::string mode) {
     auto& managed = *lidars_.at(lidar - 1);
-    co_return co_await command(managed, managed.device().start(std::move(mode)));
+    co_return co_await command(managed, managed.start_scan(std::move(mode)));
 }
 
 asio::awaitable<api::LidarControl::Outcome> Gateway::stop(std::uint32_t lidar) {
     auto& managed = *lidars_.at(lidar - 1);
-    co_return co_await command(managed, managed.device().stop());
+    co_return co_await command(managed, managed.stop_scan());
 }
 
 asio::awaitable<api::LidarControl::Outcome>
 Gateway::update(std::uint32_t lidar, api::LidarUpdate update) {
     auto& managed = *lidars_.at(lidar - 1);
-    co_return co_await command(managed, apply(managed.device(), std::move(update)));
+    co_return co_await command(managed, managed.update(std::move(update)));
 }
 
 asio::awaitable<api::LidarControl::Outcome> Gateway::reset(std::uint32_t lidar) {
     auto& managed = *lidars_.at(lidar - 1);
-    co_return co_await command(managed, managed.device().reset());
+    co_return co_await command(managed, managed.reset());
 }
 
 asio::awaitable<Result<device::Diagnosis, Problem>> Gateway::diagnose(std::uint32_t lidar) {

@@ -3,6 +3,7 @@
 
 #include "driver/protocol/result.hpp"
 #include "server/api/api.hpp"
+#include "server/gateway/gateway_lidar.hpp"
 #include "server/gateway/lidar_ids.hpp"
 #include "server/gateway/lidar_memory.hpp"
 #include "server/gateway/lidar_url.hpp"
@@ -64,6 +65,9 @@ private:
 
     Result<void, Problem> add_lidars(const MakeLogger& make_logger);
     [[nodiscard]] device::DeviceOptions options_for(const LidarUrl& url) const;
+    Result<void, Problem>
+    add_remote(const LidarUrl& url, const RemoteLidarUrl& remote, const MakeLogger& make_logger);
+    [[nodiscard]] bool is_own(const RemoteLidarUrl& remote) const;
     Result<LidarPlace, Problem>
     place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make_logger);
     Result<void, Problem> listen(const MakeLogger& make_logger);
@@ -83,7 +87,7 @@ private:
     std::unique_ptr<hub::Hub> hub_;
     LidarIds ids_;
     VirtualLidars virtual_lidars_;
-    std::vector<std::unique_ptr<ManagedLidar>> lidars_;
+    std::vector<std::unique_ptr<GatewayLidar>> lidars_;
     std::vector<api::Api> apis_;  ///< one a worker
     std::unique_ptr<net::Listener> http_;
     std::unique_ptr<net::Listener> tcp_;

@@ -16,6 +16,7 @@ namespace sweepcast::gateway {
 namespace {
 
 constexpr std::string_view virtual_scheme = "virtual:";
+constexpr std::string_view remote_scheme = "sweepcast:";
 constexpr std::size_t longest_name = 64;
 constexpr std::size_t longest_mode = 64;
 
@@ -50,27 +51,65 @@ Result<LidarUrl, Problem> parse_virtual(std::string_view text, Parameters& other
     return LidarUrl{std::string(text), std::move(lidar)};
 }
 
+bool is_port(std::string_view text) {
+    std::uint16_t port{};
+    const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), port);
+    return failed == std::errc() && end == text.data() + text.size() && port > 0;
+}
+
+Result<LidarUrl, Problem> parse_remote(std::string_view text, Parameters& others) {
+    const auto bad = bad_url(
+        text,
+        "not a URL of another gateway's lidar",
+        "write sweepcast://HOST:PORT/ID, such as sweepcast://robot:8081/A0E1C2D3; the port is that "
+        "of its stream (8081), and with one lidar only the ID may be left out"
+    );
+    const auto url = boost::urls::parse_uri(text);
+    if (!url || url->host().empty() || url->has_fragment() || url->has_userinfo()) {
+        return bad;
+    }
+    RemoteLidarUrl remote{url->host_address(), "8081", {}};
+    if (url->has_port()) {
+        remote.port = url->port();
+    }
+    const std::string path = url->path();
+    if (!path.empty()) {
+        remote.id = path.substr(1);
+    }
+    const bool odd_path = !path.empty() && path.front() != '/';
+    if (odd_path || !is_port(remote.port) || (!remote.id.empty() && !is_lidar_name(remote.id))) {
+        return bad;
+    }
+    for (const auto& parameter : url->params()) {
+        if (parameter.key == "mode" || parameter.key == "hz") {
+            return bad_url(
+                text,
+                fmt::format("its own gateway sets its {}", std::string(parameter.key)),
+                "leave it out here; only name=ID can be given"
+            );
+        }
+        others.push_back({std::string(parameter.key), std::string(parameter.value)});
+    }
+    return LidarUrl{std::string(text), std::move(remote)};
+}
+
 Result<LidarUrl, Problem> parse_place(std::string_view text, Parameters& others) {
     if (text.starts_with(virtual_scheme)) {
         return parse_virtual(text, others);
+    }
+    if (text.starts_with(remote_scheme)) {
+        return parse_remote(text, others);
     }
     auto url = link::parse_link_url(text, others);
     if (!url) {
         auto problem = url.error();
         problem.cause = "lidar " + problem.cause;
-        problem.hint += "; or a virtual lidar: virtual:a1m8";
+        problem.hint +=
+            "; or a virtual lidar: virtual:a1m8; or another gateway's: "
+            "sweepcast://HOST:8081/ID";
         return problem;
     }
     return LidarUrl{std::string(text), std::move(*url)};
-}
-
-bool is_name(std::string_view name) {
-    // "." and ".." are not what they seem in the path of a URL.
-    return name.find_first_not_of('.') != std::string_view::npos && name.size() <= longest_name &&
-           std::all_of(name.begin(), name.end(), [](char c) {
-               return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                      c == '.' || c == '_' || c == '-';
-           });
 }
 
 std::optional<double> parse_hz(std::string_view text) {
@@ -84,7 +123,7 @@ std::optional<double> parse_hz(std::string_view text) {
 /// Takes in one of the parameters that any lidar may have.
 Result<void, Problem> apply(LidarUrl& url, const link::UrlParameter& parameter) {
     if (parameter.key == "name") {
-        if (!is_name(parameter.value)) {
+        if (!is_lidar_name(parameter.value)) {
             return bad_url(
                 url.text,
                 fmt::format("\"{}\" cannot be a lidar's name", link::printable(parameter.value)),
@@ -141,7 +180,22 @@ Result<LidarUrl, Problem> parse_lidar_url(std::string_view text) {
     return url;
 }
 
+bool is_lidar_name(std::string_view name) {
+    // "." and ".." are not what they seem in the path of a URL.
+    return name.find_first_not_of('.') != std::string_view::npos && name.size() <= longest_name &&
+           std::all_of(name.begin(), name.end(), [](char c) {
+               return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                      c == '.' || c == '_' || c == '-';
+           });
+}
+
 std::string port_name(const LidarUrl& url) {
+    if (const auto* remote = std::get_if<RemoteLidarUrl>(&url.where)) {
+        if (!remote->id.empty()) {
+            return remote->id;
+        }
+        return is_lidar_name(remote->host) ? remote->host : "gateway";
+    }
     if (const auto* way = std::get_if<link::LinkUrl>(&url.where)) {
         return link::short_name(*way);
     }

@@ -20,13 +20,20 @@ struct VirtualLidarUrl {
     std::vector<std::string> faults{};  ///< as `sweepcast virtual --fault` takes them
 };
 
+/// A lidar of another gateway, by its stream over TCP.
+struct RemoteLidarUrl {
+    std::string host{};
+    std::string port{};
+    std::string id{};  ///< empty: the only one that the gateway has
+};
+
 /// Rotations per second that may be asked for.
 inline constexpr double slowest_hz = 1;
 inline constexpr double fastest_hz = 30;
 
 struct LidarUrl {
     std::string text;  ///< as the user wrote it
-    std::variant<link::LinkUrl, VirtualLidarUrl> where;
+    std::variant<link::LinkUrl, VirtualLidarUrl, RemoteLidarUrl> where;
     std::string name{};          ///< the id it is to have; empty: by its serial number
     std::string mode{};          ///< scan mode by name or id; empty: not asked for
     std::optional<double> hz{};  ///< rotations per second; none: not asked for
@@ -35,15 +42,19 @@ struct LidarUrl {
     bool is_stand_in{};
 };
 
-/// Reads a link's URL (see link::parse_link_url) or "virtual:a1m8", "virtual:a1m8?world=FILE"; all
-/// with the parameters that any lidar may have: "name=left" (1 to 64 of A-Z a-z 0-9 . _ -,
-/// not only dots), "mode=Boost" (name or id), "hz=7.5" (slowest_hz to fastest_hz).
-/// The Problem names what is wrong and shows what can be written.
+/// Reads a link's URL (see link::parse_link_url), or "virtual:a1m8", "virtual:a1m8?world=FILE", or
+/// "sweepcast://HOST[:PORT][/ID]" (port 8081), which takes a name only; all others with the
+/// parameters that any lidar may have: "name=left" (1 to 64 of A-Z a-z 0-9 . _ -, not only dots),
+/// "mode=Boost" (name or id), "hz=7.5" (slowest_hz to fastest_hz). The Problem names what is wrong
+/// and shows what can be written.
 [[nodiscard]] Result<LidarUrl, Problem> parse_lidar_url(std::string_view text);
 
 /// The name a lidar goes by until it has been identified: the last part of its port's path, its
-/// host, or "virtual-a1m8".
+/// host, "virtual-a1m8", or what it is called at the other gateway.
 [[nodiscard]] std::string port_name(const LidarUrl& url);
+
+/// Whether a lidar can be named so.
+[[nodiscard]] bool is_lidar_name(std::string_view name);
 
 /// What is wrong with the names that users gave these lidars, if anything: each may be given once.
 [[nodiscard]] std::optional<Problem> name_clash(const std::vector<LidarUrl>& lidars);

@@ -1,5 +1,6 @@
 #include "server/gateway/managed_lidar.hpp"
 
+#include "driver/device/advice.hpp"
 #include "driver/diagnosis/diagnose.hpp"
 #include "driver/protocol/reply.hpp"
 #include "server/stream/messages.hpp"
@@ -42,6 +43,34 @@ void ManagedLidar::start() {
 
 void ManagedLidar::shut_down() {
     asio::post(worker_.executor(), [this] { device_.shut_down(); });
+}
+
+GatewayLidar::Done ManagedLidar::start_scan(std::string mode) {
+    co_return co_await device_.start(std::move(mode));
+}
+
+GatewayLidar::Done ManagedLidar::stop_scan() {
+    co_return co_await device_.stop();
+}
+
+GatewayLidar::Done ManagedLidar::reset() {
+    co_return co_await device_.reset();
+}
+
+GatewayLidar::Done ManagedLidar::update(api::LidarUpdate update) {
+    const auto& modes = device_.state().modes;
+    if (update.mode && !modes.empty() && device::find_mode(modes, *update.mode) == nullptr) {
+        co_return device::unknown_mode(*update.mode, modes);
+    }
+    if (update.speed_hz) {
+        if (auto set = device_.set_speed(*update.speed_hz); !set) {
+            co_return set.error();
+        }
+    }
+    if (update.mode) {
+        co_return co_await device_.set_mode(*update.mode);
+    }
+    co_return Result<void, Problem>{};
 }
 
 asio::awaitable<Result<device::Diagnosis, Problem>> ManagedLidar::diagnose() {

@@ -1,9 +1,11 @@
-// ManagedLidar: one lidar of the gateway. Runs its device on one worker and publishes what it sees.
+// ManagedLidar: a lidar on a port of the gateway. Runs its device on one worker and publishes what
+// it sees.
 #pragma once
 
 #include "driver/async/worker.hpp"
 #include "driver/device/device.hpp"
 #include "driver/link/link_url.hpp"
+#include "server/gateway/gateway_lidar.hpp"
 #include "server/gateway/lidar_ids.hpp"
 #include "server/gateway/lidar_memory.hpp"
 #include "server/hub/hub.hpp"
@@ -33,8 +35,7 @@ struct LidarPlace {
     device::OpenLink open_link;
 };
 
-/// Belongs to its worker: after start() everything but stopped() runs there.
-class ManagedLidar final : private device::DeviceObserver {
+class ManagedLidar final : public GatewayLidar, private device::DeviceObserver {
 public:
     ManagedLidar(
         LidarPlace place,
@@ -46,21 +47,19 @@ public:
         std::shared_ptr<spdlog::logger> log
     );
 
-    /// Begins the lidar's life. From any thread.
-    void start();
-    /// Ends it: scan stopped, motor off, port closed. From any thread; stopped() tells when.
-    void shut_down();
-    /// Becomes ready when the life begun by start() has ended.
-    [[nodiscard]] std::future<void>& stopped() { return stopped_; }
-    [[nodiscard]] bool started() const { return started_; }
+    void start() override;
+    /// Scan stopped, motor off, port closed.
+    void shut_down() override;
+    [[nodiscard]] std::future<void>& stopped() override { return stopped_; }
+    [[nodiscard]] bool started() const override { return started_; }
+    [[nodiscard]] async::Worker& worker() override { return worker_; }
+    [[nodiscard]] hub::LidarSnapshotPtr snapshot() const override { return snapshot_; }
 
-    [[nodiscard]] async::Worker& worker() { return worker_; }
-    [[nodiscard]] device::Device& device() { return device_; }
-    [[nodiscard]] hub::LidarSnapshotPtr snapshot() const { return snapshot_; }
-
-    /// What is wrong with the lidar: told from its state if it is in hand, else by examining it.
-    /// Errors: as Device::diagnose().
-    boost::asio::awaitable<Result<device::Diagnosis, Problem>> diagnose();
+    Done start_scan(std::string mode) override;
+    Done stop_scan() override;
+    Done reset() override;
+    Done update(api::LidarUpdate update) override;
+    boost::asio::awaitable<Result<device::Diagnosis, Problem>> diagnose() override;
 
 private:
     void on_state(const device::DeviceState& state) override;

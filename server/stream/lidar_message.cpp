@@ -5,7 +5,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <chrono>
+#include <cmath>
+#include <string_view>
 
 namespace sweepcast::stream {
 
@@ -109,7 +113,132 @@ void set_time(std::chrono::system_clock::time_point time, google::protobuf::Time
     );
 }
 
+device::Phase to_phase(v1::Lidar::State state) {
+    for (const auto phase :
+         {device::Phase::identifying,
+          device::Phase::idle,
+          device::Phase::starting,
+          device::Phase::scanning,
+          device::Phase::stopping,
+          device::Phase::protection_stop,
+          device::Phase::failed}) {
+        if (to_state(phase) == state) {
+            return phase;
+        }
+    }
+    return device::Phase::disconnected;
+}
+
+std::uint8_t to_byte(std::uint64_t value) {
+    return static_cast<std::uint8_t>(std::min<std::uint64_t>(value, 255));
+}
+
+/// The number that `text` is in this base; 0 if it is none.
+std::uint8_t parse_byte(std::string_view text, int base) {
+    unsigned value{};
+    const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value, base);
+    return failed == std::errc() && end == text.data() + text.size() ? to_byte(value)
+                                                                     : std::uint8_t{0};
+}
+
+protocol::DeviceInfo to_info(const v1::DeviceInfo& message) {
+    protocol::DeviceInfo info;
+    const std::string_view firmware = message.firmware();
+    const auto dot = std::min(firmware.find('.'), firmware.size());
+    info.firmware_major = parse_byte(firmware.substr(0, dot), 10);
+    info.firmware_minor = parse_byte(firmware.substr(std::min(dot + 1, firmware.size())), 10);
+    info.hardware = to_byte(message.hardware());
+    const std::string_view serial = message.serial_number();
+    for (std::size_t i = 0; i < info.serial.size() && serial.size() == 2 * info.serial.size();
+         ++i) {
+        info.serial[i] = parse_byte(serial.substr(2 * i, 2), 16);
+    }
+    return info;
+}
+
+device::Rotation to_rotation(const v1::Rotation& message) {
+    device::Rotation rotation;
+    for (const auto control : {device::SpeedControl::duty, device::SpeedControl::rpm}) {
+        if (to_control(control) == message.control()) {
+            rotation.control = control;
+        }
+    }
+    rotation.wanted_hz = message.wanted_hz();
+    rotation.measured_hz = message.measured_hz();
+    rotation.settled = message.settled();
+    rotation.usual_hz = message.usual_hz();
+    rotation.min_hz = message.min_hz();
+    rotation.max_hz = message.max_hz();
+    rotation.warning = message.warning();
+    return rotation;
+}
+
+device::LineQuality to_line(const v1::Line& message) {
+    return {
+        message.baud(),
+        message.bytes(),
+        message.samples(),
+        message.checksum_errors(),
+        message.skipped_bytes(),
+        message.lost_packets()};
+}
+
+device::ScanMode to_mode(const v1::ScanMode& message) {
+    constexpr double mm_per_m = 1000.0;
+    constexpr double ns_per_s = 1e9;
+    device::ScanMode mode;
+    mode.name = message.name();
+    mode.answer_type = static_cast<protocol::AnswerType>(to_byte(message.answer_type()));
+    if (message.samples_per_second() > 1) {
+        mode.sample_duration =
+            std::chrono::nanoseconds(std::llround(ns_per_s / message.samples_per_second()));
+    }
+    if (message.has_id()) {
+        mode.id = static_cast<std::uint16_t>(message.id());
+    }
+    mode.max_distance_mm = message.max_distance_m() * mm_per_m;
+    mode.typical = message.typical();
+    return mode;
+}
+
+protocol::Health to_health(const v1::Health& message) {
+    protocol::Health health;
+    for (const auto status : {protocol::HealthStatus::warning, protocol::HealthStatus::error}) {
+        if (to_status(status) == message.status()) {
+            health.status = status;
+        }
+    }
+    health.code = static_cast<std::uint16_t>(message.error_code());
+    return health;
+}
+
 }  // namespace
+
+device::DeviceState from_message(const v1::Lidar& message) {
+    constexpr std::int64_t last_second = 9'000'000'000;  // of what nanoseconds can count
+    device::DeviceState state;
+    state.phase = to_phase(message.state());
+    state.since = std::chrono::system_clock::time_point(
+        std::chrono::seconds(std::clamp<std::int64_t>(message.since().seconds(), 0, last_second)) +
+        std::chrono::nanoseconds(message.since().nanos())
+    );
+    state.cause = message.cause();
+    state.hint = message.hint();
+    state.mode = message.mode();
+    if (message.has_device()) {
+        state.info = to_info(message.device());
+        state.alias = message.device().model();
+        state.rotation = to_rotation(message.rotation());
+        state.line = to_line(message.line());
+    }
+    if (message.has_health()) {
+        state.health = to_health(message.health());
+    }
+    for (const auto& mode : message.modes()) {
+        state.modes.push_back(to_mode(mode));
+    }
+    return state;
+}
 
 void to_message(const hub::LidarSnapshot& lidar, v1::Lidar& message) {
     message.set_number(lidar.number);

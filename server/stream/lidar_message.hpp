@@ -9,4 +9,8 @@ namespace sweepcast::stream {
 
 void to_message(const hub::LidarSnapshot& lidar, v1::Lidar& message);
 
+/// The inverse, as far as the lidar's own state goes: as another gateway tells it. What is
+/// malformed is taken for not told.
+[[nodiscard]] device::DeviceState from_message(const v1::Lidar& message);
+
 }  // namespace sweepcast::stream

@@ -41,7 +41,8 @@ def run(commands: str, port: str, folder: pathlib.Path) -> list[re.Match]:
     """Runs the commands until enough lines were promised; returns those lines."""
     script = "set -e\n" + commands.replace("8081", port)
     # Debian's python3 has Debian's packages, whatever other python may be first on the path.
-    environment = dict(os.environ, PATH="/usr/bin:" + os.environ["PATH"])
+    # What npm has fetched once it need not fetch again.
+    environment = dict(os.environ, PATH="/usr/bin:" + os.environ["PATH"], npm_config_prefer_offline="true")
     shell = subprocess.Popen(
         ["timeout", str(TIMEOUT_S), "sh", "-c", script], cwd=folder, env=environment, stdout=subprocess.PIPE, text=True
     )

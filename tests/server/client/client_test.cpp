@@ -6,9 +6,11 @@
 #include "server/frame/message_framing.hpp"
 
 #include <boost/asio/buffer.hpp>
+#include <boost/asio/co_spawn.hpp>
 #include <boost/asio/error.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/read.hpp>
+#include <boost/asio/use_future.hpp>
 #include <boost/asio/write.hpp>
 #include <gtest/gtest.h>
 
@@ -225,6 +227,33 @@ TEST_F(ClientTest, RepeatsARefusedWishWhenTheLidarAppears) {
     expect_next<v1::Lidar>(client);
     expect_next<v1::Lidar>(client);
     expect_next<Scan>(client);
+    gateway.join();
+}
+
+TEST_F(ClientTest, WaitsLongestAfterItWasGivenUp) {
+    auto options = impatient();
+    options.backoff = {1ms, 10'000ms};
+    Client client(context_.get_executor(), url(), options);
+    auto next = [&] {
+        auto event = boost::asio::co_spawn(context_, client.next(), boost::asio::use_future);
+        context_.restart();
+        context_.run();
+        return event.get();
+    };
+    std::thread gateway([this] {
+        auto peer = accept();
+        peer.greet();
+        peer.hear();
+        EXPECT_ANY_THROW(peer.hear()) << "the connection is to end";
+    });
+    const auto first = next();
+    ASSERT_TRUE(first && std::holds_alternative<Connected>(*first));
+    client.give_up({{}, "nonsense came", ""});
+    const auto event = next();
+    ASSERT_TRUE(event && std::holds_alternative<Disconnected>(*event));
+    const auto& lost = std::get<Disconnected>(*event);
+    EXPECT_EQ(lost.why.cause, "nonsense came");
+    EXPECT_GE(lost.retry_in, 5000ms);
     gateway.join();
 }
 

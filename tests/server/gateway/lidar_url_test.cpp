@@ -48,6 +48,50 @@ TEST(ParseLidarUrl, ReadsTheFaultsOfAVirtualLidar) {
     );
 }
 
+TEST(ParseLidarUrl, ReadsAnotherGatewaysLidar) {
+    const auto url = parse_lidar_url("sweepcast://robot:9000/A0E1C2D3?name=attic");
+    ASSERT_TRUE(url);
+    const auto& remote = std::get<RemoteLidarUrl>(url->where);
+    EXPECT_EQ(remote.host, "robot");
+    EXPECT_EQ(remote.port, "9000");
+    EXPECT_EQ(remote.id, "A0E1C2D3");
+    EXPECT_EQ(url->name, "attic");
+    EXPECT_EQ(port_name(*url), "A0E1C2D3");
+}
+
+TEST(ParseLidarUrl, AnotherGatewaysOnlyLidarNeedsNoId) {
+    for (const auto* text : {"sweepcast://robot", "sweepcast://robot/", "sweepcast://robot:8081"}) {
+        const auto url = parse_lidar_url(text);
+        ASSERT_TRUE(url) << text;
+        EXPECT_EQ(std::get<RemoteLidarUrl>(url->where).port, "8081");
+        EXPECT_EQ(std::get<RemoteLidarUrl>(url->where).id, "");
+        EXPECT_EQ(port_name(*url), "robot");
+    }
+    EXPECT_EQ(port_name(*parse_lidar_url("sweepcast://[::1]")), "gateway");
+}
+
+TEST(ParseLidarUrl, AnotherGatewaysLidarIsRefusedWithAnExample) {
+    for (const auto* text :
+         {"sweepcast:",
+          "sweepcast://",
+          "sweepcast:robot",
+          "sweepcast://robot:x",
+          "sweepcast://robot:0",
+          "sweepcast://robot:65536/A",
+          "sweepcast://robot/A/B",
+          "sweepcast://robot/..",
+          "sweepcast://me@robot/A",
+          "sweepcast://robot/A#B"}) {
+        const auto url = parse_lidar_url(text);
+        ASSERT_FALSE(url) << text;
+        EXPECT_THAT(url.error().hint, HasSubstr("sweepcast://robot:8081/A0E1C2D3")) << text;
+    }
+    EXPECT_THAT(
+        parse_lidar_url("sweepcast://robot/A?hz=7").error().cause,
+        HasSubstr("its own gateway sets its hz")
+    );
+}
+
 TEST(ParseLidarUrl, AsksForNothingUnlessTold) {
     const auto url = parse_lidar_url("/dev/ttyUSB0");
     ASSERT_TRUE(url);

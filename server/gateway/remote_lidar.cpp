@@ -1,0 +1,346 @@
+#include "server/gateway/remote_lidar.hpp"
+
+#include "server/stream/lidar_message.hpp"
+#include "server/stream/messages.hpp"
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/post.hpp>
+#include <fmt/format.h>
+
+#include <string_view>
+#include <utility>
+#include <variant>
+
+namespace sweepcast::gateway {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// Gateways one behind the other. More are a loop, most likely: each round
+/// makes the URL longer.
+constexpr std::size_t most_hops = 4;
+constexpr std::string_view via = " via ";
+constexpr double sector_deg = 30;
+
+client::ClientOptions states_first() {
+    client::ClientOptions options;
+    options.wish.reset();  // set when it is known which lidar there it is
+    return options;
+}
+
+std::size_t hops(std::string_view url) {
+    std::size_t count = 0;
+    for (auto at = url.find(via); at != std::string_view::npos; at = url.find(via, at + 1)) {
+        ++count;
+    }
+    return count;
+}
+
+v1::Subscribe wish_for(const v1::Lidar& lidar) {
+    v1::Subscribe wish;
+    wish.set_lidar(lidar.id());
+    wish.set_kind(v1::SECTOR);
+    wish.set_sector_deg(sector_deg);
+    return wish;
+}
+
+device::CapturedSweep captured(const client::JoinedSweep& joined, const hub::LidarSnapshot& lidar) {
+    const auto& scan = joined.scan;
+    device::CapturedSweep sweep;
+    sweep.sweep = scan.sweep;
+    sweep.sweep.begun = joined.begun;
+    sweep.lidar = lidar.id;
+    sweep.lidar_number = lidar.number;
+    sweep.sequence = joined.sequence;
+    sweep.mode = scan.mode;
+    sweep.answer_type = scan.answer_type;
+    sweep.sample_duration =
+        std::chrono::duration_cast<std::chrono::microseconds>(scan.sample_duration);
+    sweep.clock_step = scan.clock_step;
+    return sweep;
+}
+
+/// What brings the times of a scan to UNIX time; to before it, which is no
+/// time, if that is not known.
+std::chrono::nanoseconds monotonic_to_unix(const frame::DecodedScan& scan) {
+    const auto first = scan.sweep.samples.front().time.time_since_epoch();
+    return scan.first_unix.count() > 0 ? scan.first_unix - first : -first - 1ns;
+}
+
+}  // namespace
+
+RemoteLidar::RemoteLidar(
+    RemotePlace place,
+    async::Worker& worker,
+    hub::Hub& hub,
+    LidarIds& ids,
+    std::shared_ptr<spdlog::logger> log
+)
+    : place_(std::move(place))
+    , worker_(worker)
+    , hub_(hub)
+    , ids_(ids)
+    , log_(std::move(log))
+    , client_(std::make_unique<client::Client>(
+          worker.executor(),
+          client::StreamUrl{false, place_.where.host, place_.where.port, ""},
+          states_first()
+      ))
+    , frames_(hub.variants(), place_.number)
+    , id_(place_.port_name)
+    , stopped_(ended_.get_future()) {}
+
+void RemoteLidar::start() {
+    started_ = true;
+    asio::post(worker_.executor(), [this] {
+        publish({});
+        worker_.tasks().spawn(live());
+    });
+}
+
+void RemoteLidar::shut_down() {
+    asio::post(worker_.executor(), [this] {
+        if (client_) {
+            client_->cancel();
+        }
+    });
+}
+
+asio::awaitable<void> RemoteLidar::live() {
+    struct Ended {
+        RemoteLidar& lidar;
+        ~Ended() {
+            lidar.client_.reset();  // which must not outlive the worker
+            lidar.ended_.set_value();
+        }
+    } ended{*this};
+    for (;;) {
+        auto event = co_await client_->next();
+        if (!event) {
+            co_return;  // shut down
+        }
+        std::visit([this](auto& what) { take(std::move(what)); }, *event);
+        if (due_wish_) {
+            auto wish = *std::exchange(due_wish_, std::nullopt);
+            co_await client_->set_wish(std::move(wish));
+        }
+    }
+}
+
+void RemoteLidar::take(const client::Connected& connected) {
+    log_->info("connected to {}", connected.hello.server());
+    there_.clear();
+    chosen_.reset();
+    for (const auto& lidar : connected.hello.lidars()) {
+        there_[lidar.number()] = lidar;
+    }
+    choose();
+}
+
+void RemoteLidar::take(const client::Disconnected& disconnected) {
+    chosen_.reset();
+    fail(disconnected.why);
+}
+
+void RemoteLidar::take(const v1::Lidar& lidar) {
+    there_[lidar.number()] = lidar;
+    if (!chosen_) {
+        choose();
+    } else if (*chosen_ == lidar.number()) {
+        mirror(lidar);
+    }
+}
+
+void RemoteLidar::take(const v1::StreamError& refusal) {
+    if (refusal.code() == "lidar_not_found") {
+        return;  // choose() says so, and waits for it
+    }
+    fail({{}, refusal.message(), refusal.hint()});
+}
+
+void RemoteLidar::take(const v1::StreamStats& stats) {
+    log_->warn("too slow for {}: {} frames lost so far", place_.url, stats.frames_dropped());
+}
+
+bool RemoteLidar::is_meant(const v1::Lidar& lidar) const {
+    const auto& id = place_.where.id;
+    // By its port's name too, as at its own gateway.
+    return id.empty() || lidar.id() == id || lidar.url().ends_with("/" + id);
+}
+
+/// Finds out which of the other gateway's lidars it is, and what to do then.
+void RemoteLidar::choose() {
+    std::string ids;
+    std::size_t meant = 0;
+    for (const auto& [number, lidar] : there_) {
+        ids += (ids.empty() ? "" : ", ") + lidar.id();
+        if (is_meant(lidar)) {
+            ++meant;
+            chosen_ = number;
+        }
+    }
+    const auto gateway = fmt::format("the gateway at {}:{}", place_.where.host, place_.where.port);
+    if (meant == 0) {
+        fail(
+            {{},
+             place_.where.id.empty()
+                 ? gateway + " has no lidar"
+                 : fmt::format("{} has no lidar \"{}\"", gateway, place_.where.id),
+             ids.empty() ? "start it with one" : "it has: " + ids}
+        );
+    } else if (meant > 1) {
+        chosen_.reset();
+        fail(
+            {{},
+             fmt::format("{} has {} lidars", gateway, there_.size()),
+             fmt::format("say which: {}/ID; it has: {}", place_.url, ids)}
+        );
+    } else {
+        const auto& lidar = there_.at(*chosen_);
+        due_wish_ = wish_for(lidar);
+        mirror(lidar);
+    }
+}
+
+/// The name its user gave it, else the one it has there.
+void RemoteLidar::claim_id(const v1::Lidar& lidar) {
+    if (place_.name.empty() && lidar.id() != claimed_) {
+        claimed_ = lidar.id();
+        const auto& serial = lidar.device().serial_number();
+        id_ = ids_.claim(place_.number, lidar.id(), serial.empty() ? lidar.id() : serial);
+    }
+}
+
+void RemoteLidar::mirror(const v1::Lidar& lidar) {
+    if (hops(lidar.url()) + 1 > most_hops) {
+        give_up(
+            {{},
+             fmt::format(
+                 "more than {} gateways one behind the other, or a loop of them",
+                 most_hops
+             ),
+             "take the lidar from the gateway that it is attached to"}
+        );
+        return;
+    }
+    if (!is_lidar_name(lidar.id())) {
+        give_up({{}, "the lidar there has a name that it cannot have here", "give it another there"}
+        );
+        return;
+    }
+    claim_id(lidar);
+    hub::LidarSnapshot snapshot;
+    snapshot.url = lidar.url() + std::string(via) + place_.url;
+    snapshot.is_virtual = lidar.is_virtual();
+    snapshot.is_stand_in = lidar.is_stand_in();
+    snapshot.state = stream::from_message(lidar);
+    publish(std::move(snapshot));
+}
+
+/// Ends the connection for what came over it, for a while.
+void RemoteLidar::give_up(Problem why) {
+    chosen_.reset();
+    due_wish_.reset();
+    client_->give_up(std::move(why));
+}
+
+/// Tells that it cannot be had, and of what is known of it.
+void RemoteLidar::fail(const Problem& why) {
+    hub::LidarSnapshot snapshot = *snapshot_;
+    if (snapshot.state.phase == device::Phase::failed && snapshot.state.cause == why.cause) {
+        return;  // one attempt of many
+    }
+    log_->warn("{}: {}; {}", place_.url, why.cause, why.hint);
+    snapshot.state.phase = device::Phase::failed;
+    snapshot.state.since = std::chrono::system_clock::now();
+    snapshot.state.cause = why.cause;
+    snapshot.state.hint = why.hint;
+    snapshot.state.rotation.measured_hz = 0;
+    publish(std::move(snapshot));
+}
+
+void RemoteLidar::publish(hub::LidarSnapshot snapshot) {
+    snapshot.number = place_.number;
+    snapshot.id = id_;
+    snapshot.port_name = place_.port_name;
+    if (snapshot.url.empty()) {
+        snapshot.url = place_.url;
+    }
+    snapshot_ = std::make_shared<const hub::LidarSnapshot>(std::move(snapshot));
+    hub_.publish(hub::StateNews{snapshot_, stream::state_message(*snapshot_)});
+}
+
+void RemoteLidar::take(client::Scan scan) {
+    auto& samples = scan.scan.sweep.samples;
+    if (samples.empty() || !chosen_ || there_.at(*chosen_).id() != scan.lidar) {
+        return;
+    }
+    const auto arrival =
+        std::chrono::floor<std::chrono::microseconds>(std::chrono::steady_clock::now());
+    clock_.hear(samples.back().time, arrival);
+    if (scan.kind == v1::SWEEP || scan.sector == 0) {
+        offset_ = clock_.offset();
+    }
+    for (auto& sample : samples) {
+        sample.time += offset_;
+    }
+    if (joiner_.take(std::move(scan))) {
+        publish_sweep(arrival);
+    }
+}
+
+/// Publishes what there is now of the sweep under way.
+void RemoteLidar::publish_sweep(protocol::SampleTime arrival) {
+    const auto& joined = joiner_.sweep();
+    const auto& scan = joined.scan;
+    if (joined.complete) {
+        auto sweep = captured(joined, *snapshot_);
+        sweep.monotonic_to_unix = monotonic_to_unix(scan);
+        auto frames = frames_.of(sweep);
+        auto shared = std::make_shared<const device::CapturedSweep>(std::move(sweep));
+        hub_.publish(hub::SweepNews{place_.number, std::move(shared), std::move(frames)});
+        return;
+    }
+    device::SweepProgress progress;
+    progress.sweep = {scan.sweep.samples, joined.begun, scan.sweep.time_uncertainty};
+    progress.sequence = joined.sequence;
+    progress.mode = scan.mode;
+    progress.answer_type = scan.answer_type;
+    progress.sample_duration =
+        std::chrono::duration_cast<std::chrono::microseconds>(scan.sample_duration);
+    progress.monotonic_to_unix = monotonic_to_unix(scan);
+    progress.clock_step = scan.clock_step;
+    progress.arrival = arrival;
+    hub_.publish(hub::SectorNews{place_.number, frames_.of(snapshot_->id, progress)});
+}
+
+Problem RemoteLidar::controlled_elsewhere() const {
+    return {
+        make_error_code(boost::system::errc::operation_not_supported),
+        fmt::format("{} is another gateway's lidar, and only that can control it", id_),
+        fmt::format("ask {}: usually http://{}:8080/", place_.where.host, place_.where.host)};
+}
+
+GatewayLidar::Done RemoteLidar::start_scan(std::string) {
+    co_return controlled_elsewhere();
+}
+
+GatewayLidar::Done RemoteLidar::stop_scan() {
+    co_return controlled_elsewhere();
+}
+
+GatewayLidar::Done RemoteLidar::reset() {
+    co_return controlled_elsewhere();
+}
+
+GatewayLidar::Done RemoteLidar::update(api::LidarUpdate) {
+    co_return controlled_elsewhere();
+}
+
+asio::awaitable<Result<device::Diagnosis, Problem>> RemoteLidar::diagnose() {
+    co_return controlled_elsewhere();
+}
+
+}  // namespace sweepcast::gateway

@@ -1,0 +1,215 @@
+// One gateway's lidar published by another.
+#include "server/client/sweep_joiner.hpp"
+#include "tests/e2e/gateway.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+using testing::EndsWith;
+using testing::HasSubstr;
+
+namespace sweepcast::test {
+namespace {
+
+std::string remote(const std::string& tcp, const std::string& rest = "") {
+    return "sweepcast://" + tcp + rest;
+}
+
+/// Its only lidar, as the gateway tells it.
+std::string lidar_of(const GatewayProcess& gateway) {
+    return http(gateway.http, "GET", "/api/v1/lidars").body;
+}
+
+std::string field(const std::string& json, const std::string& name) {
+    const auto at = json.find("\"" + name + "\":");
+    const auto begin = json.find('"', at + name.size() + 3) + 1;
+    return json.substr(begin, json.find('"', begin) - begin);
+}
+
+using Sweeps = std::map<std::uint64_t, frame::DecodedScan>;
+
+/// Takes sweeps in until `until` is among them.
+void read_until(Subscriber& subscriber, std::uint64_t until, Sweeps& into) {
+    while (into.empty() || into.rbegin()->first < until) {
+        auto sweep = subscriber.next_sweep();
+        into[sweep.sequence] = std::move(sweep.scan);
+    }
+}
+
+/// A sweep as both gateways have it, but for the monotonic clock.
+void expect_same(const frame::DecodedScan& there, const frame::DecodedScan& here) {
+    ASSERT_EQ(there.sweep.samples.size(), here.sweep.samples.size());
+    for (std::size_t i = 0; i < there.sweep.samples.size(); ++i) {
+        const auto& a = there.sweep.samples[i];
+        auto b = here.sweep.samples[i];
+        EXPECT_EQ(there.unix_time(a), here.unix_time(b)) << i;
+        b.time = a.time;
+        ASSERT_EQ(a, b) << i;
+    }
+    EXPECT_EQ(there.sweep.period, here.sweep.period);
+    EXPECT_EQ(there.sweep.losses, here.sweep.losses);
+    EXPECT_EQ(there.mode, here.mode);
+    EXPECT_EQ(there.answer_type, here.answer_type);
+    EXPECT_EQ(there.sample_duration, here.sample_duration);
+}
+
+TEST(RemoteLidar, IsPublishedWithAllThatItsOwnGatewayTells) {
+    GatewayProcess there({"--lidar", "virtual:a1m8"});
+    GatewayProcess here({"--lidar", remote(there.tcp)});
+    Subscriber near("tcp://" + there.tcp);
+    Subscriber far("tcp://" + here.tcp);
+    const auto state = far.wait_for_state(v1::Lidar::SCANNING);
+    EXPECT_EQ(state.device().model(), "A1M8");
+    EXPECT_THAT(state.url(), EndsWith(" via sweepcast://" + there.tcp));
+    EXPECT_TRUE(state.is_virtual());
+    near.subscribe();
+    far.subscribe();
+    Sweeps sweeps_there;
+    Sweeps sweeps_here;
+    const auto first = far.next_sweep().sequence;
+    read_until(near, first + 4, sweeps_there);
+    read_until(far, first + 4, sweeps_here);
+    std::size_t compared = 0;
+    for (const auto& [sequence, sweep] : sweeps_here) {
+        if (sweeps_there.contains(sequence)) {
+            expect_same(sweeps_there.at(sequence), sweep);
+            ++compared;
+        }
+    }
+    EXPECT_GE(compared, 2U);
+    EXPECT_EQ(field(lidar_of(here), "id"), field(lidar_of(there), "id"));
+    EXPECT_EQ(field(lidar_of(here), "serialNumber"), field(lidar_of(there), "serialNumber"));
+}
+
+TEST(RemoteLidar, IsPublishedInSectorsToo) {
+    GatewayProcess there({"--lidar", "virtual:a1m8"});
+    GatewayProcess here({"--lidar", remote(there.tcp)});
+    Subscriber near("tcp://" + there.tcp);
+    Subscriber far("tcp://" + here.tcp);
+    far.wait_for_state(v1::Lidar::SCANNING);
+    near.subscribe();
+    v1::Subscribe wish;
+    wish.set_kind(v1::SECTOR);
+    wish.set_sector_deg(90);
+    far.subscribe(wish);
+    frame::FrameDecoder decoder;
+    client::SweepJoiner joiner;
+    std::size_t sectors = 0;
+    do {
+        const auto message = far.next([](const auto& received) { return received.has_frame(); });
+        const auto& frame = message.frame();
+        client::Scan scan;
+        scan.kind = frame.kind();
+        scan.sequence = frame.sequence();
+        scan.sector = frame.sector();
+        scan.last = frame.last();
+        scan.scan = *decoder.decode(frame);
+        sectors = frame.sector() + 1;
+        (void)joiner.take(std::move(scan));  // false in the middle of the first turn
+    } while (!joiner.sweep().complete);
+    EXPECT_GE(sectors, 3U);
+    Sweeps sweeps;
+    read_until(near, joiner.sweep().sequence, sweeps);
+    ASSERT_TRUE(sweeps.contains(joiner.sweep().sequence));
+    expect_same(sweeps.at(joiner.sweep().sequence), joiner.sweep().scan);
+}
+
+TEST(RemoteLidar, IsControlledAtItsOwnGateway) {
+    GatewayProcess there({"--lidar", "virtual:a1m8"});
+    GatewayProcess here({"--lidar", remote(there.tcp, "?name=attic")});
+    Subscriber("tcp://" + here.tcp).wait_for_state(v1::Lidar::SCANNING);
+    for (const auto* command : {"start", "stop", "reset"}) {
+        const auto answer = http(here.http, "POST", std::string("/api/v1/lidars/attic/") + command);
+        EXPECT_EQ(answer.status, 409) << command;
+        EXPECT_THAT(answer.body, HasSubstr("controlled_elsewhere"));
+        EXPECT_THAT(answer.body, HasSubstr("http://127.0.0.1:8080/"));
+    }
+    EXPECT_EQ(http(here.http, "PATCH", "/api/v1/lidars/attic", R"({"speed_hz": 7})").status, 409);
+    EXPECT_EQ(http(here.http, "GET", "/api/v1/lidars/attic/diagnosis").status, 409);
+    EXPECT_EQ(http(here.http, "GET", "/api/v1/lidars/attic").status, 200);
+}
+
+TEST(RemoteLidar, ComesBackWithItsGateway) {
+    const std::vector<std::string> lidar{"--lidar", "virtual:a1m8"};
+    auto there = std::make_unique<GatewayProcess>(lidar);
+    GatewayProcess here({"--lidar", remote(there->tcp)});
+    const auto stream = there->tcp;
+    Subscriber far("tcp://" + here.tcp);
+    far.wait_for_state(v1::Lidar::SCANNING);
+    there->process.signal(SIGTERM);
+    there->process.wait();
+    const auto failed = far.wait_for_state(v1::Lidar::FAILED);
+    EXPECT_THAT(failed.cause(), HasSubstr("the gateway is shutting down"));
+    EXPECT_EQ(failed.device().model(), "A1M8") << "what is known of it stays known";
+    there = std::make_unique<GatewayProcess>(
+        std::vector<std::string>{"--lidar", "virtual:a1m8", "--tcp", stream}
+    );
+    far.wait_for_state(v1::Lidar::SCANNING);
+    far.subscribe();
+    far.next_sweep();
+}
+
+TEST(RemoteLidar, MustBeNamedWhereThereAreSeveral) {
+    GatewayProcess there({"--lidar", "virtual:a1m8?name=left", "--lidar", "virtual:a1m8?name=right"}
+    );
+    GatewayProcess here(
+        {"--lidar",
+         remote(there.tcp),
+         "--lidar",
+         remote(there.tcp, "/right"),
+         "--lidar",
+         remote(there.tcp, "/middle")}
+    );
+    std::map<std::uint32_t, v1::Lidar> lidars;
+    Subscriber far("tcp://" + here.tcp);
+    far.next([&](const v1::ServerMessage& message) {
+        for (const auto& lidar : message.hello().lidars()) {
+            lidars[lidar.number()] = lidar;
+        }
+        if (message.has_lidar()) {
+            lidars[message.lidar().number()] = message.lidar();
+        }
+        return lidars[1].state() == v1::Lidar::FAILED && lidars[2].state() == v1::Lidar::SCANNING &&
+               lidars[3].state() == v1::Lidar::FAILED;
+    });
+    EXPECT_THAT(lidars[1].cause(), HasSubstr("has 2 lidars"));
+    EXPECT_THAT(lidars[1].hint(), HasSubstr("left, right"));
+    EXPECT_EQ(lidars[2].id(), "right");
+    EXPECT_THAT(lidars[3].cause(), HasSubstr("no lidar \"middle\""));
+}
+
+/// A stream's address that nobody has any more.
+std::string free_address() {
+    return GatewayProcess({"--lidar", "virtual:a1m8"}).tcp;
+}
+
+TEST(RemoteLidar, OfItsOwnGatewayIsRefused) {
+    const auto own = free_address();
+    Process gateway(
+        {program(), "serve", "--lidar", remote(own), "--tcp", own, "--http", "127.0.0.1:0"}
+    );
+    EXPECT_EQ(gateway.wait(), 1);
+    EXPECT_THAT(gateway.rest_of_log(), HasSubstr("this gateway's own stream"));
+}
+
+TEST(RemoteLidar, InALoopOfGatewaysFailsAndSaysSo) {
+    const auto one = free_address();
+    const auto other = free_address();
+    GatewayProcess first({"--lidar", remote(other), "--tcp", one});
+    GatewayProcess second({"--lidar", remote(one), "--tcp", other});
+    Subscriber subscriber("tcp://" + one);
+    subscriber.next([](const v1::ServerMessage& message) {
+        return message.lidar().cause().find("a loop of them") != std::string::npos;
+    });
+    EXPECT_EQ(http(first.http, "GET", "/healthz").status, 200);
+}
+
+}  // namespace
+}  // namespace sweepcast::test
