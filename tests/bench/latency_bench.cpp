@@ -15,12 +15,12 @@
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <csignal>
+#include <condition_variable>
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <netinet/in.h>
-#include <poll.h>
 #include <stdexcept>
 #include <string>
 #include <sys/epoll.h>
@@ -37,6 +37,7 @@ using namespace std::chrono_literals;
 using Microseconds = std::chrono::duration<double, std::micro>;
 
 constexpr std::size_t samples_per_packet = 40;
+constexpr std::size_t turns_per_second = 10;
 /// Left out at the beginning: the motor's start, and the joining of the others.
 constexpr auto settling = 1s;
 
@@ -90,6 +91,12 @@ public:
         thread_ = std::thread([this] { run(); });
     }
 
+    /// Waits until so many frames have come, but no longer than `limit`.
+    void wait_for(std::size_t count, std::chrono::seconds limit) {
+        std::unique_lock lock(mutex_);
+        came_.wait_for(lock, limit, [&] { return arrivals_.size() >= count; });
+    }
+
     /// Ends it and gives what came.
     const std::vector<Arrival>& finish() {
         ::shutdown(socket_, SHUT_RDWR);
@@ -119,6 +126,8 @@ private:
                 const auto& frame = message.frame();
                 const auto scan = decoder.decode(frame);
                 if (scan) {
+                    const std::lock_guard lock(mutex_);
+                    came_.notify_one();
                     arrivals_.push_back(
                         {now, frame.sequence(), frame.last(), scan->sweep.samples.size()}
                     );
@@ -128,6 +137,8 @@ private:
     }
 
     int socket_;
+    std::mutex mutex_;
+    std::condition_variable came_;
     std::vector<Arrival> arrivals_;
     std::thread thread_;
 };
@@ -254,7 +265,8 @@ void measure(std::chrono::seconds length, std::size_t others) {
     }
     MeasuredClient sector_client(gateway.tcp, v1::SECTOR);
     MeasuredClient sweep_client(gateway.tcp, v1::SWEEP);
-    std::this_thread::sleep_for(length + settling + 3s);  // and the motor's start
+    const auto turns = static_cast<std::size_t>((length + settling).count()) * turns_per_second;
+    sweep_client.wait_for(turns, 2 * length + 30s);
     const auto& sweeps = sweep_client.finish();
     const auto& sectors = sector_client.finish();
     fmt::print(
