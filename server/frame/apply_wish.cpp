@@ -29,9 +29,9 @@ Sample without_echo(Sample sample) {
 }
 
 Sample clipped(const Wish& wish, const Sample& sample) {
-    const bool is_fine = !sample.distance.has_echo() ||
-                         (sample.distance >= wish.nearest && sample.distance <= wish.farthest &&
-                          sample.quality >= wish.min_quality);
+    const bool is_fine = !sample.distance.has_echo() || (sample.distance.raw >= wish.nearest.raw &&
+                                                         sample.distance.raw <= wish.farthest.raw &&
+                                                         sample.quality >= wish.min_quality);
     return is_fine ? sample : without_echo(sample);
 }
 

@@ -45,7 +45,7 @@ Result<Order, Refusal> order_from(v1::Subscribe subscribe, const hub::LocalHub& 
     }
     auto frames = frame_wish(subscribe);
     if (!frames) {
-        auto refusal = std::move(frames.error());
+        auto refusal = frames.error();
         refusal.request = subscribe.request();
         return refusal;
     }
@@ -132,7 +132,7 @@ Result<Order, Refusal> order_from_message(std::string_view bytes, const hub::Loc
 Result<Order, Refusal> order_from_query(const Query& query, const hub::LocalHub& hub) {
     auto subscribe = subscribe_from_query(query);
     if (!subscribe) {
-        return std::move(subscribe.error());
+        return subscribe.error();
     }
     return order_from(std::move(*subscribe), hub);
 }

@@ -29,20 +29,20 @@ bool read(std::string_view text, std::uint32_t& value) {
     return failed == std::errc{} && rest == end;
 }
 
-template <class T, void (Subscribe::*set)(T)>
+template <class T, void (Subscribe::*Set)(T)>
 bool number(std::string_view text, Subscribe& subscribe) {
     T value{};
     const bool is_number = read(text, value);
-    (subscribe.*set)(value);
+    (subscribe.*Set)(value);
     return is_number;
 }
 
 /// Reads each part of a list with commas.
-template <bool (*read_part)(std::string_view, Subscribe&)>
+template <bool (*ReadPart)(std::string_view, Subscribe&)>
 bool list(std::string_view text, Subscribe& subscribe) {
     for (;;) {
         const auto comma = text.find(',');
-        if (!read_part(text.substr(0, comma), subscribe)) {
+        if (!ReadPart(text.substr(0, comma), subscribe)) {
             return false;
         }
         if (comma == std::string_view::npos) {
@@ -52,7 +52,7 @@ bool list(std::string_view text, Subscribe& subscribe) {
     }
 }
 
-template <v1::AngleWindow* (Subscribe::*add)()>
+template <v1::AngleWindow* (Subscribe::*Add)()>
 bool window(std::string_view text, Subscribe& subscribe) {
     const auto dash = text.find('-');
     if (dash == std::string_view::npos) {
@@ -61,7 +61,7 @@ bool window(std::string_view text, Subscribe& subscribe) {
     double from = 0;
     double to = 0;
     const bool are_numbers = read(text.substr(0, dash), from) && read(text.substr(dash + 1), to);
-    auto& added = *(subscribe.*add)();
+    auto& added = *(subscribe.*Add)();
     added.set_from_deg(from);
     added.set_to_deg(to);
     return are_numbers;
@@ -209,8 +209,8 @@ std::string query_text(const frame::Wish& wish) {
             "keep",
             fmt::format("{}-{}", window.from_deg, window.to_deg));
     }
-    add(wish.nearest > usual.nearest, "min_distance_mm", wish.nearest.millimetres());
-    add(wish.farthest < usual.farthest, "max_distance_mm", wish.farthest.millimetres());
+    add(wish.nearest.raw > usual.nearest.raw, "min_distance_mm", wish.nearest.millimetres());
+    add(wish.farthest.raw < usual.farthest.raw, "max_distance_mm", wish.farthest.millimetres());
     add(wish.min_quality > 0, "min_quality", wish.min_quality);
     add(wish.every_nth > 1, "every_nth", wish.every_nth);
     add(wish.bins.count > 0, "bins", wish.bins.count);
