@@ -73,7 +73,7 @@ public:
         angles_.reserve(count_);
         lows_.reserve(count_);
         constexpr auto turn = static_cast<std::int32_t>(q6_per_turn);
-        std::int32_t angle = static_cast<std::int32_t>(to_q6(samples.front().angle));
+        auto angle = static_cast<std::int32_t>(to_q6(samples.front().angle));
         for (const auto& sample : samples) {
             std::int32_t step = static_cast<std::int32_t>(to_q6(sample.angle)) - angle % turn;
             step += step < -turn / 2 ? turn : 0;
