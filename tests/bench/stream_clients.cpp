@@ -279,12 +279,12 @@ private:
     Bytes take(Client& client, Bytes bytes) {
         if (!client.shaken) {
             constexpr std::string_view end = "\r\n\r\n";
-            const auto found = std::ranges::search(bytes, end);
-            if (found.empty()) {
+            const auto found = std::search(bytes.begin(), bytes.end(), end.begin(), end.end());
+            if (found == bytes.end()) {
                 return bytes;
             }
             client.shaken = true;
-            bytes = Bytes(found.end(), bytes.end());
+            bytes = Bytes(found + static_cast<std::ptrdiff_t>(end.size()), bytes.end());
         }
         Place place;
         const auto find = client.kind == Kind::tcp ? find_delimited : find_websocket;
