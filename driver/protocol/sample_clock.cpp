@@ -18,7 +18,11 @@ constexpr double rounding = 10e3;
 constexpr double doubt_lasts = 400 * ms;
 /// Later than any adapter delivers.
 constexpr double longest_delay = 40 * ms;
-/// How long bytes have to stay late until they are not.
+/// More than the buffers of lines and hosts hold back.
+constexpr double longest_backlog = 300 * ms;
+/// How long bytes have to stay late until they are not: longer than it takes to catch up, for a host
+/// that was not scheduled or a lidar behind a full line; or, beyond any backlog, for the next packet.
+constexpr double backlog_read = 300 * ms;
 constexpr double pause_sure = 5 * ms;
 constexpr double epoch = 2000 * ms;
 /// A step forward by more is made at once, as something is missing.
@@ -158,7 +162,7 @@ void SampleClock::notice_pause(double now) {
     if (!late_since_) {
         late_since_ = now;
     }
-    if (now - *late_since_ >= pause_sure) {
+    if (now - *late_since_ >= (last_above_ > longest_backlog ? pause_sure : backlog_read)) {
         envelope_.shift(last_above_);
         last_above_ = 0.0;
         late_since_.reset();

@@ -116,6 +116,14 @@ TEST_F(SampleClockTest, AHostThatWasNotScheduledIsNoGap) {
     EXPECT_LE(std::chrono::abs(packet()), 100us);
 }
 
+TEST_F(SampleClockTest, WhatALineThatIsNearlyFullCatchesUpWithIsNoGap) {
+    settle();
+    for (int i = 150; i > 0; --i) {  // packets of 1.25 ms every 0.85 ms
+        EXPECT_LE(std::chrono::abs(packet(i * 400us)), 100us) << i;
+    }
+    EXPECT_LE(std::chrono::abs(packet()), 100us);
+}
+
 class UntoldRateTest : public SampleClockTest {
 protected:
     UntoldRateTest() : SampleClockTest(0ns) {}
