@@ -46,6 +46,16 @@ test("until it is seen again, a direction keeps the echoes of the turn before", 
   assert.deepEqual(distances(last.drawn), [2]);
 });
 
+test("where the borders of sectors differ from turn to turn there is neither gap nor double", () => {
+  const revolution = new Revolution();
+  for (const k of QUARTERS) revolution.add(place(1, k), quarter(k, 1));
+  const angles = Array.from({ length: 13 }, (_, k) => k * 10);
+  const longer = sweepOf(scanOf(angles.map((angle) => [angle, 2000] as const)));
+  const { drawn } = revolution.add(place(2, 0), longer);
+  assert.equal(drawn.x.length, 36);
+  assert.equal([...drawn.distanceM].filter((metres) => metres === 2).length, 13);
+});
+
 test("a turn of which a sector was missed is drawn, but is no sweep", () => {
   const revolution = new Revolution();
   revolution.add(place(1, 0), quarter(0, 1));

@@ -1,5 +1,5 @@
 // Sectors put together: the newest echoes all around, to be drawn at once, and whole sweeps.
-import { joined, type Sweep } from "./sweep";
+import { after, joined, turned, type Sweep } from "./sweep";
 
 /// Which part of which sweep a sector is (stream.proto, Frame).
 export interface Place {
@@ -37,8 +37,9 @@ export class Revolution {
       this.parts.length === 0 ? 0 : turned(this.parts[0]!.sweep.startTurn, sweep.startTurn);
     const to = from + turned(sweep.startTurn, sweep.endTurn);
     this.parts.push({ sweep, from, to });
-    // A sector at the end of its turn may reach over the place where the next one begins.
-    const ahead = this.before.filter((part) => part.from > to);
+    const ahead = this.before
+      .filter((part) => part.to > to)
+      .map((part) => ({ sweep: part.from > to ? part.sweep : after(part.sweep, to - part.from) }));
     const periodS = place.last && sweep.periodS > 0 ? sweep.periodS : this.periodS;
     this.periodS = periodS;
     const drawn = joined([...ahead, ...this.parts].map((part) => part.sweep));
@@ -54,9 +55,4 @@ export class Revolution {
     this.parts = [];
     this.missing = false;
   }
-}
-
-/// From one angle forward to another, in turns, [0, 1).
-function turned(from: number, to: number): number {
-  return (((to - from) % 1) + 1) % 1;
 }

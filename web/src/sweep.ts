@@ -98,6 +98,29 @@ export function joined(parts: readonly Sweep[]): Sweep {
   };
 }
 
+/// The part of a sweep after so many turns since its first sample, [0, 1).
+export function after(sweep: Sweep, turns: number): Sweep {
+  // Angles of echoes are rounded: the first may lie a little before the sample that it is of.
+  const little = 1e-6;
+  const passed = (degrees: number) =>
+    turned(sweep.startTurn - little, degrees / 360) <= turns + 2 * little;
+  let first = 0;
+  while (first < sweep.x.length && passed(sweep.angleDeg[first]!)) ++first;
+  return {
+    ...sweep,
+    angleDeg: sweep.angleDeg.subarray(first),
+    distanceM: sweep.distanceM.subarray(first),
+    quality: sweep.quality.subarray(first),
+    x: sweep.x.subarray(first),
+    y: sweep.y.subarray(first),
+  };
+}
+
+/// From one angle forward to another, in turns, [0, 1).
+export function turned(from: number, to: number): number {
+  return (((to - from) % 1) + 1) % 1;
+}
+
 function concatenated<Column extends Float32Array | Uint8Array>(
   columns: readonly Column[],
   make: new (length: number) => Column,
