@@ -88,12 +88,9 @@ void Outbox::abort(error_code why) {
 
 asio::awaitable<void> Outbox::run() {
     struct Leave {
-        Outbox& outbox;
-        ~Leave() {
-            outbox.attended_ = false;
-            outbox.pause_ = nullptr;
-        }
-    } leave{*this};
+        std::shared_ptr<Attendance> attendance;
+        ~Leave() { *attendance = {}; }
+    } const leave{attendance_};
     while (state_ == State::blocked || (state_ == State::ready && !closed_ && news())) {
         error_code woken;
         if (state_ == State::blocked) {
@@ -103,9 +100,9 @@ asio::awaitable<void> Outbox::run() {
             );
         } else {  // what is new of its losses is not to be told yet
             asio::steady_timer pause(socket_.get_executor(), told_at_ + between_news_);
-            pause_ = &pause;
+            attendance_->pause = &pause;
             co_await pause.async_wait(asio::redirect_error(asio::use_awaitable, woken));
-            pause_ = nullptr;
+            attendance_->pause = nullptr;
             woken = {};  // something else to do, and then it is found above
         }
         if (woken) {
@@ -234,9 +231,9 @@ void Outbox::block() {
 }
 
 void Outbox::call_attendant() {
-    if (pause_ != nullptr) {
-        pause_->cancel();
-    } else if (attend_ && !std::exchange(attended_, true)) {
+    if (attendance_->pause != nullptr) {
+        attendance_->pause->cancel();
+    } else if (attend_ && !std::exchange(attendance_->attended, true)) {
         attend_();
     }
 }
@@ -253,8 +250,8 @@ void Outbox::fail(error_code why) {
     rest_ = {};
     mailbox_.discard_frames();
     end_own(why);
-    if (pause_ != nullptr) {
-        pause_->cancel();
+    if (attendance_->pause != nullptr) {
+        attendance_->pause->cancel();
     }
 }
 

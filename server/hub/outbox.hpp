@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 
@@ -118,7 +119,6 @@ private:
 
     State state_{State::ready};
     bool closed_{};
-    bool attended_{};
     frame::Framing framing_;
     Last own_last_{Last::no};
     std::uint64_t frames_sent_{};
@@ -137,7 +137,13 @@ private:
     std::uint64_t dropped_told_{};
     Clock::time_point told_at_{};
     Attend attend_;
-    boost::asio::steady_timer* pause_{};  // what run() waits for, if for that
+    /// What is known of run(). It has a share of it: where contexts are torn down with coroutines
+    /// still in them, it may be the last to go.
+    struct Attendance {
+        bool attended{};
+        boost::asio::steady_timer* pause{};  ///< what it waits for, if for that
+    };
+    std::shared_ptr<Attendance> attendance_{std::make_shared<Attendance>()};
     std::string end_reason_;
 };
 
