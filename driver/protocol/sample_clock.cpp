@@ -20,8 +20,9 @@ constexpr double doubt_lasts = 400 * ms;
 constexpr double longest_delay = 40 * ms;
 /// More than the buffers of lines and hosts hold back.
 constexpr double longest_backlog = 300 * ms;
-/// How long bytes have to stay late until they are not: longer than it takes to catch up, for a host
-/// that was not scheduled or a lidar behind a full line; or, beyond any backlog, for the next packet.
+/// How long bytes have to stay late until they are not: longer than it takes to catch up, for a
+/// host that was not scheduled or a lidar behind a full line; or, beyond any backlog, for the next
+/// packet.
 constexpr double backlog_read = 300 * ms;
 constexpr double pause_sure = 5 * ms;
 constexpr double epoch = 2000 * ms;

@@ -17,10 +17,10 @@ namespace sweepcast::frame {
 
 namespace {
 
-/// The last level at which a byte saved costs little (tests/bench/frame_bench). Bytes and microseconds
-/// a sweep in the built-in room, at levels 3, 4, 5 and 9: 0x81 of 364 samples 804 in 8, 784 in 10, 778
-/// in 11, 779 in 27; 0x83 of 803 samples 1,211 in 8, 1,189 in 12, 1,174 in 15, 1,173 in 44; 0x85 of
-/// 3,209 samples 2,252 in 13, 2,255 in 22, 2,253 in 26, 2,253 in 46.
+/// The last level at which a byte saved costs little (tests/bench/frame_bench). Bytes and
+/// microseconds a sweep in the built-in room, at levels 3, 4, 5 and 9: 0x81 of 364 samples 804 in
+/// 8, 784 in 10, 778 in 11, 779 in 27; 0x83 of 803 samples 1,211 in 8, 1,189 in 12, 1,174 in 15,
+/// 1,173 in 44; 0x85 of 3,209 samples 2,252 in 13, 2,255 in 22, 2,253 in 26, 2,253 in 46.
 constexpr int zstd_level = 4;
 
 struct FreeContext {
