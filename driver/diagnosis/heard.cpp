@@ -72,32 +72,26 @@ bool find_answer(std::span<const std::uint8_t> bytes, Heard& heard) {
     return true;
 }
 
-struct Format {
-    AnswerType type;
-    std::size_t samples_per_packet;
-};
+constexpr std::array answer_types{
+    AnswerType::normal,
+    AnswerType::express,
+    AnswerType::hq,
+    AnswerType::ultra,
+    AnswerType::dense,
+    AnswerType::ultra_dense};
 
-constexpr std::array<Format, 6> formats{{
-    {AnswerType::normal, 1},
-    {AnswerType::express, 32},
-    {AnswerType::hq, 96},
-    {AnswerType::ultra, 96},
-    {AnswerType::dense, 40},
-    {AnswerType::ultra_dense, 64},
-}};
-
-/// Whether the decoder of this format makes samples of all but a packet or two at the ends.
-bool decodes_as(const Format& format, std::span<const std::uint8_t> bytes) {
+/// Whether the decoder of this type makes samples of all but a packet or two at the ends.
+bool decodes_as(AnswerType type, std::span<const std::uint8_t> bytes) {
     constexpr std::chrono::microseconds any_duration{250};
     constexpr std::size_t enough_samples = 12;
-    auto decoder = protocol::Decoder::create(format.type, {any_duration, 0, false});
+    auto decoder = protocol::Decoder::create(type, {any_duration, 0, false});
     if (!decoder) {
         return false;
     }
     protocol::Decoded decoded;
     decoder->push(bytes, {}, decoded);
-    const auto size = protocol::packet_size(format.type);
-    const auto packets = decoded.samples.size() / format.samples_per_packet;
+    const auto size = protocol::packet_size(type);
+    const auto packets = decoded.samples.size() / protocol::samples_per_packet(type);
     // A packet may be cut off at either end, and capsules come out with their successor.
     return decoded.samples.size() >= enough_samples && (packets + 3) * size >= bytes.size();
 }
@@ -158,9 +152,8 @@ Heard classify(std::uint32_t baud, std::span<const std::uint8_t> bytes) {
     if (bytes.empty() || find_answer(bytes, heard) || find_text(bytes, heard)) {
         return heard;
     }
-    const bool scan_data = std::ranges::any_of(formats, [&](const Format& format) {
-        return decodes_as(format, bytes);
-    });
+    const bool scan_data =
+        std::ranges::any_of(answer_types, [&](AnswerType type) { return decodes_as(type, bytes); });
     heard.kind = scan_data ? HeardKind::scan_data : HeardKind::noise;
     return heard;
 }

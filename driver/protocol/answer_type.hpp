@@ -45,4 +45,22 @@ enum class ReplyType : std::uint8_t {
     return 0;
 }
 
+/// Samples in one such packet; 0 for a value that is no answer type.
+[[nodiscard]] constexpr std::size_t samples_per_packet(AnswerType type) {
+    switch (type) {
+    case AnswerType::normal:
+        return 1;
+    case AnswerType::express:
+        return 32;
+    case AnswerType::hq:
+    case AnswerType::ultra:
+        return 96;
+    case AnswerType::dense:
+        return 40;
+    case AnswerType::ultra_dense:
+        return 64;
+    }
+    return 0;
+}
+
 }  // namespace sweepcast::protocol

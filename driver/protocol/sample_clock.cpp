@@ -32,23 +32,6 @@ constexpr double greatest_bend = 1 * ms;
 constexpr double bend_spread = 16.0;
 constexpr double shortest_bend = 100 * ms;
 
-std::size_t samples_in_packet(AnswerType type) {
-    switch (type) {
-    case AnswerType::normal:
-        return 1;
-    case AnswerType::express:
-        return 32;
-    case AnswerType::hq:
-    case AnswerType::ultra:
-        return 96;
-    case AnswerType::dense:
-        return 40;
-    case AnswerType::ultra_dense:
-        return 64;
-    }
-    return 1;
-}
-
 /// The decoder's delay of 0x83 counts a single sample of its packets, as the vendor's does.
 double bytes_not_subtracted(AnswerType type) {
     return type == AnswerType::hq ? static_cast<double>(packet_size(type)) - 8.0 : 0.0;
@@ -61,7 +44,7 @@ double in_ns(std::chrono::nanoseconds duration) {
 }  // namespace
 
 SampleClock::SampleClock(const SampleClockSettings& settings)
-    : samples_per_packet_(samples_in_packet(settings.type))
+    : samples_per_packet_(samples_per_packet(settings.type))
     , holds_packet_(settings.type != AnswerType::normal && settings.type != AnswerType::hq)
     , packet_bytes_(static_cast<double>(packet_size(settings.type)))
     , nominal_step_(in_ns(settings.sample_duration))

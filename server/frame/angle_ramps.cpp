@@ -34,16 +34,16 @@ struct Shape {
     Spread spread{};
 };
 
-std::optional<Shape> shape_of(AnswerType type) {
+/// None of answers that have an angle for each sample.
+std::optional<Spread> spread_of(AnswerType type) {
     switch (type) {
     case AnswerType::express:
-        return Shape{32, Spread::by_correction};
+        return Spread::by_correction;
     case AnswerType::ultra:
-        return Shape{96, Spread::by_distance};
+        return Spread::by_distance;
     case AnswerType::dense:
-        return Shape{40, Spread::even};
     case AnswerType::ultra_dense:
-        return Shape{64, Spread::even};
+        return Spread::even;
     case AnswerType::normal:
     case AnswerType::hq:
         break;
@@ -267,11 +267,12 @@ private:
 }  // namespace
 
 std::optional<AngleRamps> fit_ramps(Samples samples, AnswerType type) {
-    const auto shape = shape_of(type);
-    if (!shape || samples.empty()) {
+    const auto spread = spread_of(type);
+    if (!spread || samples.empty()) {
         return std::nullopt;
     }
-    return Fitter(samples, *shape).fit();
+    const auto length = static_cast<std::uint32_t>(protocol::samples_per_packet(type));
+    return Fitter(samples, {length, *spread}).fit();
 }
 
 void apply_ramps(const AngleRamps& ramps, std::span<Sample> samples) {

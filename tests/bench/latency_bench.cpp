@@ -36,7 +36,7 @@ namespace {
 using namespace std::chrono_literals;
 using Microseconds = std::chrono::duration<double, std::micro>;
 
-constexpr std::size_t samples_per_packet = 40;
+constexpr auto samples_per_packet = protocol::samples_per_packet(protocol::AnswerType::dense);
 constexpr std::size_t turns_per_second = 10;
 /// Left out at the beginning: the motor's start, and the joining of the others.
 constexpr auto settling = 1s;

@@ -14,24 +14,6 @@ namespace sweepcast::protocol {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// How many samples a packet holds.
-inline std::size_t samples_per_packet(AnswerType type) {
-    switch (type) {
-    case AnswerType::normal:
-        return 1;
-    case AnswerType::express:
-        return 32;
-    case AnswerType::hq:
-    case AnswerType::ultra:
-        return 96;
-    case AnswerType::dense:
-        return 40;
-    case AnswerType::ultra_dense:
-        return 64;
-    }
-    return 0;
-}
-
 /// A decoder for a type that is known to be supported.
 inline Decoder make_decoder(AnswerType type, const DecodeSettings& settings = {}) {
     return Decoder::create(type, settings).value();
