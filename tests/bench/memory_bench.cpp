@@ -1,6 +1,7 @@
 // What a subscriber costs in memory of the gateway's process (the kernel's buffers are not in it):
-// one that is idle, and one that does not read while frames come. Beside it what version 0.1 took
-// when each connection kept its HTTP session and a coroutine for each direction.
+// one that is idle, beside a WebSocket session as Beast's examples write it, and one that does not
+// read while frames come.
+#include "tests/bench/bare_websockets.hpp"
 #include "tests/bench/beat.hpp"
 #include "tests/bench/stream_clients.hpp"
 #include "tests/bench/stream_server.hpp"
@@ -13,8 +14,6 @@
 namespace sweepcast::bench {
 namespace {
 
-constexpr double websocket_before = 18'403;  // bytes, with -O2
-constexpr double tcp_before = 10'084;
 constexpr double patience_s = 20;
 constexpr std::size_t usual_size = 3000;
 /// A stalled client's kernel buffers are full soon.
@@ -39,6 +38,22 @@ struct Bench {
             throw std::runtime_error("a client got no frame");
         }
         return group;
+    }
+
+    /// Bytes that each of so many bare sessions takes.
+    double bare(std::uint32_t count) {
+        constexpr std::uint64_t only = 1;
+        const BareWebsockets sessions(make_frame(only, usual_size));
+        const auto greet = [&](std::uint32_t clients_more) {
+            const auto group = clients.connect(Kind::websocket, sessions.port(), clients_more);
+            if (!clients.wait_for(group, only, patience_s)) {
+                throw std::runtime_error("a client got no frame");
+            }
+        };
+        greet(count / 10);  // what all share
+        const auto before = resident_bytes();
+        greet(count);
+        return (static_cast<double>(resident_bytes()) - static_cast<double>(before)) / count;
     }
 
     /// Bytes that each of so many takes.
@@ -76,15 +91,19 @@ struct Bench {
 
 int run(std::uint32_t clients) {
     Bench bench;
+    // Before the bare ones, whose memory would be used again.
+    const auto websocket = bench.idle(Kind::websocket, clients);
+    const auto tcp = bench.idle(Kind::tcp, clients);
+    const auto bare = bench.bare(clients);
     fmt::print(
-        "an idle WebSocket subscriber: {:.0f} bytes (before: {:.0f})\n",
-        bench.idle(Kind::websocket, clients),
-        websocket_before
-    );
-    fmt::print(
-        "an idle TCP subscriber: {:.0f} bytes (before: {:.0f})\n",
-        bench.idle(Kind::tcp, clients),
-        tcp_before
+        "an idle WebSocket subscriber: {:.0f} bytes, over TCP {:.0f}; a bare Beast session: "
+        "{:.0f}; "
+        "ratios {:.2f}, {:.2f}\n",
+        websocket,
+        tcp,
+        bare,
+        websocket / bare,
+        tcp / bare
     );
     bench.stalled(clients / 2);
     return 0;
