@@ -47,11 +47,11 @@ INSTANTIATE_TEST_SUITE_P(
     Scanners,
     FrameCostTest,
     testing::Values(
-        CostCase{"a1_standard", {360, 1, true, AnswerType::normal}, 4.5},
-        CostCase{"a1_express", {800, 4, false, AnswerType::express}, 1.7},
-        CostCase{"c1_dense", {500, 4, false, AnswerType::dense}, 1.95},
-        CostCase{"s2_dense", {3200, 4, false, AnswerType::dense}, 1.2},
-        CostCase{"s3_ultra_dense", {3200, 1, true, AnswerType::ultra_dense}, 2.3}
+        CostCase{"a1_standard", {360, 1, true, AnswerType::normal}, 3.3},
+        CostCase{"a1_express", {800, 4, false, AnswerType::express}, 1.55},
+        CostCase{"c1_dense", {500, 4, false, AnswerType::dense}, 1.8},
+        CostCase{"s2_dense", {3200, 4, false, AnswerType::dense}, 1.05},
+        CostCase{"s3_ultra_dense", {3200, 1, true, AnswerType::ultra_dense}, 2.15}
     ),
     [](const auto& test) { return test.param.name; }
 );
