@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <zstd.h>
 
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -17,31 +16,16 @@
 #include <memory>
 #include <numbers>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace sweepcast::bench {
 namespace {
 
-using protocol::AnswerType;
 using virtual_lidar::World;
 
 constexpr std::size_t sweeps_per_room = 40;
 /// A WebSocket puts four bytes in front of a message of 126 to 65,535 bytes.
 constexpr std::size_t websocket_header = 4;
-
-struct Scanner {
-    std::string_view model;
-    AnswerType type;
-};
-constexpr std::array scanners{
-    Scanner{"a1m8", AnswerType::normal},
-    Scanner{"a1m8", AnswerType::express},
-    Scanner{"s3", AnswerType::hq},
-    Scanner{"a3m1", AnswerType::ultra},
-    Scanner{"s2", AnswerType::dense},
-    Scanner{"c1", AnswerType::ultra_dense},
-};
 
 struct NamedWorld {
     std::string name;
@@ -104,8 +88,8 @@ struct Cost {
     }
 };
 
-Cost measure(const Scanner& scanner, const std::shared_ptr<const World>& world) {
-    const auto seen = test::virtual_sweeps(scanner.model, scanner.type, world, sweeps_per_room);
+Cost measure(const test::VirtualScanner& scanner, const std::shared_ptr<const World>& world) {
+    const auto seen = test::virtual_sweeps(scanner, world, sweeps_per_room);
     frame::FrameEncoder encoder;
     Cost cost;
     for (const auto& captured : seen.sweeps) {
@@ -160,7 +144,7 @@ int run(const char* folder) {
     );
     double log_plain = 0;
     double log_dictionary = 0;
-    for (const auto& scanner : scanners) {
+    for (const auto& scanner : test::one_of_each_type) {
         Cost all;
         for (const auto& [name, world] : rooms) {
             const auto cost = measure(scanner, world);
@@ -179,8 +163,8 @@ int run(const char* folder) {
     }
     fmt::print(
         "\nof the line, geometric mean over the answer types: {:.3f}, with dictionary {:.3f}\n",
-        std::exp(log_plain / scanners.size()),
-        std::exp(log_dictionary / scanners.size())
+        std::exp(log_plain / test::one_of_each_type.size()),
+        std::exp(log_dictionary / test::one_of_each_type.size())
     );
     return 0;
 }

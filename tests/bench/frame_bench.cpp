@@ -17,32 +17,17 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace sweepcast::bench {
 namespace {
 
-using protocol::AnswerType;
 using virtual_lidar::World;
 using Microseconds = std::chrono::duration<double, std::micro>;
 
 constexpr std::size_t sweeps = 30;
 constexpr int passes = 7;
 constexpr std::array levels{1, 2, 3, 4, 5, 6, 9, 12, 19};
-
-struct Scanner {
-    std::string_view model;
-    AnswerType type;
-};
-constexpr std::array scanners{
-    Scanner{"a1m8", AnswerType::normal},
-    Scanner{"a1m8", AnswerType::express},
-    Scanner{"s3", AnswerType::hq},
-    Scanner{"a3m1", AnswerType::ultra},
-    Scanner{"s2", AnswerType::dense},
-    Scanner{"c1", AnswerType::ultra_dense},
-};
 
 /// The time of one call of `work` for each of `items`, in the fastest pass.
 template <class Items, class Work>
@@ -97,9 +82,9 @@ void print_levels(const std::vector<std::string>& raw) {
     fmt::print("\n");
 }
 
-void measure(const Scanner& scanner) {
+void measure(const test::VirtualScanner& scanner) {
     const auto world = std::make_shared<const World>(World::living_room());
-    const auto seen = test::virtual_sweeps(scanner.model, scanner.type, world, sweeps);
+    const auto seen = test::virtual_sweeps(scanner, world, sweeps);
     frame::FrameEncoder encoder;
     frame::FrameDecoder decoder;
     v1::Scan scan;
@@ -137,7 +122,7 @@ void measure(const Scanner& scanner) {
 }  // namespace sweepcast::bench
 
 int main() {
-    for (const auto& scanner : sweepcast::bench::scanners) {
+    for (const auto& scanner : sweepcast::test::one_of_each_type) {
         sweepcast::bench::measure(scanner);
     }
     return 0;

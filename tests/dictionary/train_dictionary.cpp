@@ -15,7 +15,6 @@
 #include <memory>
 #include <numbers>
 #include <string>
-#include <string_view>
 #include <vector>
 #include <zdict.h>
 
@@ -31,20 +30,16 @@ constexpr std::size_t sweeps_per_room = 24;
 /// Sectors that programs ask for, in parts of a turn.
 constexpr std::array<std::size_t, 3> sectors_per_turn{6, 12, 36};
 
-struct Scanner {
-    std::string_view model;
-    AnswerType type;
-};
 /// Those whose scans are short. Long ones gain nothing.
 constexpr std::array scanners{
-    Scanner{"a1m8", AnswerType::normal},
-    Scanner{"a1m8", AnswerType::express},
-    Scanner{"a2m8", AnswerType::ultra},
-    Scanner{"a3m1", AnswerType::ultra},
-    Scanner{"s1", AnswerType::dense},
-    Scanner{"s3", AnswerType::hq},
-    Scanner{"s2", AnswerType::dense},
-    Scanner{"c1", AnswerType::ultra_dense},
+    test::VirtualScanner{"a1m8", AnswerType::normal},
+    test::VirtualScanner{"a1m8", AnswerType::express},
+    test::VirtualScanner{"a2m8", AnswerType::ultra},
+    test::VirtualScanner{"a3m1", AnswerType::ultra},
+    test::VirtualScanner{"s1", AnswerType::dense},
+    test::VirtualScanner{"s3", AnswerType::hq},
+    test::VirtualScanner{"s2", AnswerType::dense},
+    test::VirtualScanner{"c1", AnswerType::ultra_dense},
 };
 
 /// A rectangular room with round pillars, as a file of points has it.
@@ -106,8 +101,7 @@ std::string train() {
     std::uint64_t seed = 0;
     for (const auto& scanner : scanners) {
         for (const auto& room : rooms) {
-            const auto seen =
-                test::virtual_sweeps(scanner.model, scanner.type, room, sweeps_per_room, ++seed);
+            const auto seen = test::virtual_sweeps(scanner, room, sweeps_per_room, ++seed);
             for (const auto& captured : seen.sweeps) {
                 add_sweep(captured, corpus);
             }

@@ -98,24 +98,23 @@ captured(protocol::Sweep sweep, const Persona& persona, const device::ScanMode& 
 }  // namespace
 
 VirtualSweeps virtual_sweeps(
-    std::string_view key,
-    protocol::AnswerType type,
+    const VirtualScanner& scanner,
     std::shared_ptr<const World> world,
     std::size_t count,
     std::uint64_t seed
 ) {
-    const auto& persona = *find_persona(key);
-    const auto mode = host_mode(persona, *find_mode(persona, type));
-    Scanner scanner(persona, mode, std::move(world), seed);
+    const auto& persona = *find_persona(scanner.model);
+    const auto mode = host_mode(persona, *find_mode(persona, scanner.type));
+    Scanner playing(persona, mode, std::move(world), seed);
     const std::uint32_t baud = persona.connection == Connection::serial ? persona.baud : 0;
     device::LineQuality line;
-    auto reader = device::ScanReader::create(type, mode, baud, line).value();
+    auto reader = device::ScanReader::create(scanner.type, mode, baud, line).value();
     VirtualSweeps result;
     std::vector<protocol::Sweep> finished;
     while (result.sweeps.size() < count) {
-        for (const auto& part : scanner.wait()) {
+        for (const auto& part : playing.wait()) {
             if (part.payload == Payload::measurement) {
-                reader.push(part.bytes, scanner.now(), finished);
+                reader.push(part.bytes, playing.now(), finished);
             }
         }
         for (auto& sweep : std::exchange(finished, {})) {
