@@ -268,6 +268,7 @@ test("pointing at a point tells its angle, distance and quality", async () => {
 test("the wheel magnifies about the pointer", async () => {
   const box = await page.locator("#overlay").boundingBox();
   const [x, y] = [200, 150];
+  await page.click("#zoom-out"); // from here on the view follows no sweep
   const before = await view();
   await page.mouse.move(box.x + x, box.y + y);
   await page.mouse.wheel(0, -200);
@@ -569,6 +570,25 @@ if (binary) {
     assert.ok(await row("C1").evaluate((input) => input === document.activeElement));
     await startScanning();
     await assertDrawn();
+  });
+
+  test("the first sectors of a lidar that is chosen have their colours at once", async () => {
+    await row("A2M8").check();
+    await until(
+      () =>
+        document.getElementById("model").textContent.startsWith("A2M8") &&
+        window.sweepcast.points > 50,
+    );
+    const first = page.waitForFunction(() => {
+      const { points, point } = window.sweepcast;
+      const colours = new Set(Array.from({ length: points }, (_, k) => point(k).colour.join()));
+      const chosen = document.getElementById("model").textContent.startsWith("C1");
+      return chosen && points > 50 && { points, colours: colours.size };
+    });
+    await row("C1").check();
+    const { colours } = await (await first).jsonValue();
+    assert.ok(colours > 1, "all points have one colour");
+    await startScanning();
   });
 
   test("a lidar that cannot obey a speed says so, offers none, and the wish can be withdrawn", async () => {

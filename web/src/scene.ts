@@ -6,7 +6,7 @@ import { paintGrid, type Area } from "./paint_grid";
 import { paintOverlay } from "./paint_overlay";
 import { drawPoints, type Raster } from "./points";
 import { colourIndex, colourRange, palette as paletteOf, type ColourBy, type Theme } from "./ramp";
-import { echoNear, extentOf, type Echo, type Sweep } from "./sweep";
+import { echoNear, extentOf, type Echo, type Extent, type Sweep } from "./sweep";
 import { follow, turnAt, type SweepLine } from "./sweep_line";
 import {
   fitted,
@@ -64,6 +64,8 @@ export class Scene {
   private drawn_: Drawn | undefined;
   private colourBy: ColourBy = "range";
   private range = 0;
+  /// A whole sweep of this lidar was seen; before that the colours suit what was drawn so far.
+  private suited = false;
   private colours: Colours = readColours();
   private palette = paletteOf(this.colours.theme);
   private line: SweepLine | undefined;
@@ -93,10 +95,12 @@ export class Scene {
     this.sweep_ = sweep;
     this.line = sweep && follow(this.line, sweep.endTurn, sweep.periodS, seconds());
     if (complete) this.suit(complete);
+    else if (sweep && !this.suited) this.scaleColours(extentOf(sweep));
     if (!sweep) {
       this.drawn_ = undefined;
       this.following = true;
       this.range = 0;
+      this.suited = false;
     }
     this.look();
     this.invalidate("points");
@@ -151,10 +155,16 @@ export class Scene {
   private suit(sweep: Sweep): void {
     const extent = extentOf(sweep);
     if (!extent) return;
+    this.suited = true;
+    this.scaleColours(extent);
+    if (this.following && needsRefit(this.view_, extent)) this.move(fitted(this.view_, extent));
+  }
+
+  private scaleColours(extent: Extent | undefined): void {
+    if (!extent) return;
     const range = colourRange(extent.radius, this.range);
     if (range !== this.range) this.onColourRange(range);
     this.range = range;
-    if (this.following && needsRefit(this.view_, extent)) this.move(fitted(this.view_, extent));
   }
 
   private look(): void {
