@@ -16,11 +16,13 @@ count_results() {
     failed=$((failed + all - ok - chosen))
 }
 
-# show_failures LOG: what the tests that failed said, out of ctest's log, and their names.
+# show_failures LOG: what the tests that failed said, out of ctest's log, and their names. Of each test 300 lines
+# at most.
 show_failures() {
     sed -E 's/ \.{4,}\*\*\*/ ***/' "$1" | awk '
-        /^ *Start +[0-9]+: / || /^ *[0-9]+\/[0-9]+ Test +#/ { shown = /\*\*\*(Failed|Timeout|Exception|Not Run *[0-9])/ }
+        /^ *Start +[0-9]+: / || /^ *[0-9]+\/[0-9]+ Test +#/ { lines = 0; shown = /\*\*\*(Failed|Timeout|Exception|Not Run *[0-9])/ }
         /^[0-9]+% tests passed/ || /^Errors while/ { shown = 0 }
-        /^The following tests FAILED/ || /^No tests were found/ { shown = 1 }
-        shown { print "    " $0 }'
+        /^The following tests FAILED/ || /^No tests were found/ { lines = 0; shown = 1 }
+        shown && ++lines == 301 { print "    ... (the rest is in the log)" }
+        shown && lines <= 300 { print "    " $0 }'
 }

@@ -76,13 +76,24 @@ class ResultsTest(unittest.TestCase):
     def test_what_a_test_prints_does_not_count(self):
         self.assertEqual(self.totals([SAYS_IT_FAILED]), (1, 0, 0))
 
-    def test_only_what_failed_is_shown(self):
+    def failures(self, log):
+        """What show_failures prints of this log of ctest."""
         with tempfile.TemporaryDirectory() as folder:
-            log = Path(folder) / "log"
-            log.write_text(CTEST_LOG, encoding="utf-8")
-            command = ["bash", "-c", f'source "{RESULTS}"; show_failures "{log}"']
-            done = subprocess.run(command, capture_output=True, text=True, check=True)
-        self.assertEqual(done.stdout, SHOWN)
+            file = Path(folder) / "log"
+            file.write_text(log, encoding="utf-8")
+            command = ["bash", "-c", f'set -euo pipefail; source "{RESULTS}"; show_failures "{file}"']
+            return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+    def test_only_what_failed_is_shown(self):
+        self.assertEqual(self.failures(CTEST_LOG), SHOWN)
+
+    def test_of_a_test_that_says_much_the_beginning_is_shown_and_the_tests_after_it(self):
+        chatty = CTEST_LOG.replace("Expected: 1\n", "Expected: 1\n" * 1000)
+        shown = self.failures(chatty)
+        self.assertEqual(shown.count("Expected: 1"), 298)
+        self.assertIn("    ... (the rest is in the log)\n", shown)
+        self.assertIn("#3: Slow.Test ***Timeout", shown)
+        self.assertTrue(shown.endswith("\t  3 - Slow.Test (Timeout)\n"))
 
 
 if __name__ == "__main__":
