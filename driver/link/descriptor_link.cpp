@@ -1,12 +1,16 @@
 // Reading and writing a descriptor, and what a serial line has besides bytes: DTR and a speed.
 #include "driver/link/descriptor_link.hpp"
 
+#include "driver/async/blocking.hpp"
 #include "driver/link/termios2.hpp"
 
 #include <boost/asio/buffer.hpp>
 
 #include <cerrno>
+#include <exception>
+#include <sys/file.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace sweepcast::link {
@@ -37,10 +41,42 @@ void DescriptorTransport::cancel() {
 }
 
 void DescriptorTransport::close() {
-    // A pty that lives on in its other holders would stay exclusive.
-    (void)::ioctl(descriptor_.native_handle(), TIOCNXCL);  // not a terminal: nothing to undo
-    error_code ignored;  // the descriptor is gone even if closing reports an error
-    descriptor_.close(ignored);
+    const int fd = descriptor_.release();
+    // From now on others may have it, and a pty that lives on in its other holders would stay
+    // exclusive.
+    (void)::ioctl(fd, TIOCNXCL);  // not a terminal: nothing to undo
+    (void)::flock(fd, LOCK_UN);
+    try {
+        async::start_blocking(lane_, [fd] { ::close(fd); });
+    } catch (const std::exception&) {  // no thread to be had
+        ::close(fd);
+    }
+}
+
+DescriptorLink::DescriptorLink(
+    asio::posix::stream_descriptor descriptor,
+    const std::string& node,
+    std::uint32_t baud
+)
+    : TransportLink(DescriptorTransport(std::move(descriptor), node))
+    , baud_(baud)
+    , watch_(std::make_unique<PathWatch>(transport().executor(), node, [this] { look_for_node(); })
+      ) {
+    look_for_node();  // it may have vanished before it was watched
+}
+
+/// A device file that was removed has no name any more, whatever is at its path now.
+void DescriptorLink::look_for_node() {
+    struct stat node {};
+    if (transport().is_open() && ::fstat(transport().fd(), &node) == 0 && node.st_nlink == 0) {
+        watch_.reset();
+        lose();
+    }
+}
+
+void DescriptorLink::close() {
+    watch_.reset();
+    TransportLink::close();
 }
 
 Result<void> DescriptorLink::set_dtr(bool asserted) {

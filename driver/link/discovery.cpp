@@ -1,5 +1,6 @@
 #include "driver/link/discovery.hpp"
 
+#include "driver/link/device_node.hpp"
 #include "driver/link/port_holder.hpp"
 
 #include <fmt/format.h>
@@ -30,19 +31,13 @@ std::vector<std::string> expand(const std::string& pattern) {
     return {matches.found.gl_pathv, matches.found.gl_pathv + matches.found.gl_pathc};
 }
 
-std::string node_of(const std::string& path) {
-    std::error_code not_there;
-    const auto node = fs::canonical(path, not_there);
-    return not_there ? path : node.string();
-}
-
 /// Describes ports; each device file once, for finding out who holds it walks all of `proc`.
 class Describer {
 public:
     explicit Describer(const fs::path& proc) : proc_(proc) {}
 
     FoundPort operator()(const std::string& path) {
-        const auto node = node_of(path);
+        const auto node = device_node(path);
         auto known = known_.find(node);
         if (known == known_.end()) {
             known = known_.emplace(node, ask(node)).first;
@@ -178,7 +173,7 @@ PortsThere look_around(
 
 std::string place_key(const LinkUrl& url) {
     if (const auto* serial = std::get_if<SerialPlace>(&url.where)) {
-        return node_of(serial->path);
+        return device_node(serial->path);
     }
     if (const auto* tcp = std::get_if<TcpPlace>(&url.where)) {
         return fmt::format("tcp {} {}", tcp->host, tcp->port);

@@ -185,7 +185,7 @@ asio::awaitable<Opened> open_link(
 ) {
     const Deadline deadline = std::chrono::steady_clock::now() + limit;
     if (const auto* serial = std::get_if<SerialPlace>(&url.where)) {
-        co_return open_serial(executor, serial->path, baud);
+        co_return co_await open_serial(executor, serial->path, baud, deadline);
     }
     if (const auto* over_tcp = std::get_if<TcpPlace>(&url.where)) {
         co_return co_await open_tcp(executor, *over_tcp, deadline);

@@ -67,6 +67,12 @@ public:
 
 protected:
     T& transport() { return transport_; }
+    /// The device is gone, whether or not the transport has noticed: as close(), but pending
+    /// operations end with errc::disconnected.
+    void lose() {
+        lost_ = true;
+        TransportLink::close();
+    }
 
 private:
     /// Reading or writing: at most one operation of it is under way.
@@ -77,6 +83,7 @@ private:
     class Operation;
 
     T transport_;
+    bool lost_{};
     Direction reading_;
     Direction writing_;
 };
@@ -100,7 +107,7 @@ public:
     /// Why the operation must not go on, if so. An interrupt counts once.
     std::optional<error_code> reason_to_stop() {
         if (!link_.transport_.is_open()) {
-            return was_open_ ? errc::interrupted : errc::disconnected;
+            return was_open_ && !link_.lost_ ? errc::interrupted : errc::disconnected;
         }
         if (std::exchange(direction_.interrupted, false)) {
             return errc::interrupted;

@@ -27,7 +27,7 @@ public:
     static constexpr std::size_t more_than_fits = 1 << 16;
 
     std::unique_ptr<Link> make_link(boost::asio::io_context& context) const {
-        auto opened = open_serial(context.get_executor(), pty_.path(), 115200);
+        auto opened = open_serial_now(context.get_executor(), pty_.path(), 115200);
         if (!opened) {
             throw std::runtime_error(opened.error().cause);
         }

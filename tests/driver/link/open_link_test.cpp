@@ -1,6 +1,7 @@
 // Opening what a URL names, on this machine's own ports, and what is said when that fails.
 #include "driver/link/open_link.hpp"
 
+#include "driver/async/blocking.hpp"
 #include "tests/driver/link/link_peers.hpp"
 
 #include <boost/asio/bind_cancellation_slot.hpp>
@@ -60,6 +61,30 @@ TEST_F(OpenLinkTest, OpensASerialPortAtTheSpeedAskedFor) {
     ASSERT_TRUE(link) << link.error().cause;
     EXPECT_EQ((*link)->baud(), 256000U);
     EXPECT_FALSE((*link)->is_network());
+}
+
+TEST_F(OpenLinkTest, GivesUpAPortWhoseDriverHangsAndOpensOthersMeanwhile) {
+    const PtyPair hanging;
+    const PtyPair other;
+    std::promise<void> released;
+    async::start_blocking(hanging.path(), [wait = released.get_future().share()] { wait.wait(); });
+    const auto link = open(hanging.path(), 50ms);
+    ASSERT_FALSE(link);
+    EXPECT_EQ(link.error().code, errc::timed_out);
+    EXPECT_EQ(
+        link.error().cause,
+        "opening " + hanging.path() + " hangs: its driver does not answer"
+    );
+    EXPECT_TRUE(open(other.path()));
+    released.set_value();
+    EXPECT_TRUE(open(hanging.path())) << "it is well again";
+}
+
+TEST_F(OpenLinkTest, OpensAPortThatWasJustClosed) {
+    const PtyPair pty;
+    for (int i = 0; i < 20; ++i) {
+        EXPECT_TRUE(open(pty.path()));
+    }
 }
 
 TEST_F(OpenLinkTest, ConnectsToAnAddress) {

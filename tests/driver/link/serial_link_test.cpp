@@ -9,10 +9,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <sys/file.h>
 #include <sys/ioctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace sweepcast::link {
@@ -24,13 +28,56 @@ using testing::HasSubstr;
 class SerialLinkTest : public LinkFixture<PtyPeer> {
 protected:
     Problem open_badly(const std::string& path) {
-        auto opened = open_serial(context_.get_executor(), path, 115200);
+        auto opened = open_serial_now(context_.get_executor(), path, 115200);
         if (opened) {
             throw std::runtime_error(path + " should not have opened");
         }
         return opened.error();
     }
 };
+
+/// How often this process has `file` open.
+std::ptrdiff_t descriptors_of(const std::string& file) {
+    const std::filesystem::directory_iterator all("/proc/self/fd");
+    return std::count_if(begin(all), end(all), [&](const auto& fd) {
+        std::error_code closed_meanwhile;
+        return std::filesystem::read_symlink(fd.path(), closed_meanwhile) == file;
+    });
+}
+
+/// Another process that has a port open, and does not ask who else does.
+class Holder {
+public:
+    explicit Holder(const std::string& port)
+        : fd_(::open(port.c_str(), O_RDWR | O_NOCTTY))
+        , pid_(::fork()) {
+        if (pid_ == 0) {
+            for (;;) {
+                ::pause();
+            }
+        }
+        ::close(fd_);
+    }
+    Holder(const Holder&) = delete;
+    Holder& operator=(const Holder&) = delete;
+    ~Holder() {
+        ::kill(pid_, SIGKILL);
+        ::waitpid(pid_, nullptr, 0);
+    }
+    [[nodiscard]] pid_t pid() const { return pid_; }
+
+private:
+    int fd_;
+    pid_t pid_;
+};
+
+TEST_F(SerialLinkTest, DoesNotOpenAPortThatAnotherProcessHasOpen) {
+    const PtyPair held;
+    const Holder holder(held.path());
+    const Problem problem = open_badly(held.path());
+    EXPECT_EQ(problem.code, errc::port_busy);
+    EXPECT_THAT(problem.cause, HasSubstr("(process " + std::to_string(holder.pid()) + ")"));
+}
 
 TEST_F(SerialLinkTest, ReportsAHangUpToReadsAndWritesAndDtr) {
     peer_.hang_up();
@@ -48,7 +95,7 @@ TEST_F(SerialLinkTest, NamesThisProcessWhenThePortIsAlreadyOurs) {
 
 TEST_F(SerialLinkTest, OpensAgainOnceClosed) {
     link_->close();
-    EXPECT_TRUE(open_serial(context_.get_executor(), peer_.path(), 115200).has_value());
+    EXPECT_TRUE(open_serial_now(context_.get_executor(), peer_.path(), 115200).has_value());
 }
 
 TEST_F(SerialLinkTest, MakesThePortExclusiveUntilItIsClosed) {
@@ -87,19 +134,17 @@ TEST_F(SerialLinkTest, SaysWhatAPathIsThatIsNoSerialPort) {
 
 TEST_F(SerialLinkTest, RefusesABaudRateOfZero) {
     link_->close();
-    const auto opened = open_serial(context_.get_executor(), peer_.path(), 0);
+    const auto opened = open_serial_now(context_.get_executor(), peer_.path(), 0);
     ASSERT_TRUE(opened.has_error());
     EXPECT_EQ(opened.error().code, errc::baud_not_supported);
 }
 
 TEST_F(SerialLinkTest, LeavesNoDescriptorBehindWhenItCannotOpen) {
-    const int before = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
-    ::close(before);
+    const auto before = descriptors_of("/dev/null");
     (void)open_badly("/dev/null");
+    EXPECT_EQ(descriptors_of("/dev/null"), before);
     (void)open_badly(peer_.path());
-    const int after = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
-    ::close(after);
-    EXPECT_EQ(after, before);
+    EXPECT_EQ(descriptors_of(peer_.path()), 1) << "the link's own";
 }
 
 }  // namespace
