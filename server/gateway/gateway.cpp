@@ -1,6 +1,5 @@
 #include "server/gateway/gateway.hpp"
 
-#include "driver/link/open_link.hpp"
 #include "server/gateway/managed_lidar.hpp"
 #include "server/gateway/remote_lidar.hpp"
 #include "server/http/http_session.hpp"
@@ -270,8 +269,7 @@ Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make
         .serial_port = {},
         .is_virtual = false,
         .is_stand_in = url.is_stand_in,
-        .way = {},
-        .open_link = {}};
+        .port = {}};
     link::LinkUrl way;
     if (const auto* wanted = std::get_if<VirtualLidarUrl>(&url.where)) {
         auto port = virtual_lidars_.add(*wanted, number, make_logger(place.port_name));
@@ -286,10 +284,7 @@ Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make
         place.serial_port = port != nullptr ? port->path : "";
     }
     const auto executor = workers_[(number - 1) % workers_.size()]->executor();
-    place.open_link = [executor, way](std::uint32_t baud) {
-        return link::open_link(executor, way, baud);
-    };
-    place.way = way;
+    place.port = std::make_unique<LidarPort>(executor, std::move(way));
     return place;
 }
 

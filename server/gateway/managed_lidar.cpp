@@ -31,7 +31,13 @@ ManagedLidar::ManagedLidar(
     , log_(std::move(log))
     , frames_(hub.variants(), place_.number)
     , stopped_(ended_.get_future())
-    , device_(worker.executor(), place_.open_link, std::move(options), *this, log_) {}
+    , device_(
+          worker.executor(),
+          [port = place_.port.get()](std::uint32_t baud) { return port->open(baud); },
+          std::move(options),
+          *this,
+          log_
+      ) {}
 
 void ManagedLidar::start() {
     started_ = true;
@@ -75,7 +81,7 @@ GatewayLidar::Done ManagedLidar::update(api::LidarUpdate update) {
 
 asio::awaitable<Result<device::Diagnosis, Problem>> ManagedLidar::diagnose() {
     const auto baud = device_.state().line.baud;
-    auto examine = [executor = worker_.executor(), way = place_.way, baud] {
+    auto examine = [executor = worker_.executor(), way = place_.port->way(), baud] {
         std::vector<std::uint32_t> hints(baud > 0 ? 1 : 0, baud);
         return diagnosis::diagnose(executor, way, std::move(hints), {});
     };
@@ -84,7 +90,7 @@ asio::awaitable<Result<device::Diagnosis, Problem>> ManagedLidar::diagnose() {
         co_return examined.error();
     }
     if (!*examined) {
-        co_return diagnosis::diagnosis_of(device_.state(), place_.way);
+        co_return diagnosis::diagnosis_of(device_.state(), place_.port->way());
     }
     co_return std::move(**examined);
 }

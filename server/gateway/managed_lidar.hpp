@@ -4,10 +4,10 @@
 
 #include "driver/async/worker.hpp"
 #include "driver/device/device.hpp"
-#include "driver/link/link_url.hpp"
 #include "server/gateway/gateway_lidar.hpp"
 #include "server/gateway/lidar_ids.hpp"
 #include "server/gateway/lidar_memory.hpp"
+#include "server/gateway/lidar_port.hpp"
 #include "server/hub/hub.hpp"
 #include "server/hub/lidar_frames.hpp"
 
@@ -31,8 +31,7 @@ struct LidarPlace {
         serial_port;  ///< its path, to remember the line speed by; empty: not to be remembered
     bool is_virtual{};
     bool is_stand_in{};
-    link::LinkUrl way;  ///< that open_link opens
-    device::OpenLink open_link;
+    std::unique_ptr<LidarPort> port;  ///< on the executor of the lidar's worker
 };
 
 class ManagedLidar final : public GatewayLidar, private device::DeviceObserver {
