@@ -5,7 +5,9 @@
 #include "driver/protocol/request_parser.hpp"
 #include "driver/virtual/answers.hpp"
 #include "driver/virtual/autobaud.hpp"
+#include "driver/virtual/bad_line.hpp"
 #include "driver/virtual/beam.hpp"
+#include "driver/virtual/damage_count.hpp"
 #include "driver/virtual/faults.hpp"
 #include "driver/virtual/measurement_stream.hpp"
 #include "driver/virtual/motor_drive.hpp"
@@ -14,9 +16,11 @@
 #include "driver/virtual/transmit_line.hpp"
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace sweepcast::virtual_lidar {
@@ -28,6 +32,7 @@ enum class Occurrence : std::uint8_t {
     scan_started,  ///< the request was accepted
     scan_stopped,
     reset,
+    restarted,  ///< it lost its power and has it again
     protection_stop,
     played_out,     ///< the captured scan has ended
     baud_measured,  ///< autobaud: the line has a new speed, on trial
@@ -38,6 +43,24 @@ struct Event {
     const ScanMode* mode{};  ///< of scan_started and scan_stopped
 };
 
+/// What happens to a scanner once, as opposed to a fault, which lasts.
+enum class Incident : std::uint8_t {
+    banner,           ///< it prints its boot text, in the midst of a packet if it is scanning
+    reboot,           ///< its power fails for a moment
+    protection_stop,  ///< with the value as its code, until RESET
+    half_answer,      ///< of its next answer it sends the first half only
+    angle_restart,    ///< it finds its angle reference anew
+    loss,             ///< the next bytes to the host are lost, as many as the value says
+};
+
+/// Measurements as the scanner made them, before anything happened to them.
+struct Measured {
+    StreamId stream;
+    Moment ready;  ///< to be sent
+    /// A packet; of a capture that is played any piece of the stream. Valid during the call.
+    std::span<const std::uint8_t> bytes;
+};
+
 /// How an exemplar differs from what its persona is when new.
 struct EmulatorSettings {
     Faults faults{};
@@ -45,6 +68,9 @@ struct EmulatorSettings {
     bool on_ethernet{};    ///< played on a network, by a persona that has one
     /// Whatever scan is asked for, this one is played. Outlives the emulator, as does its persona.
     Playback* playback{};
+    /// Told of every packet when it is complete, also of those that then find no room on the line,
+    /// or are not sent because of a fault. May be empty.
+    std::function<void(const Measured&)> on_measured{};
 };
 
 /// A scanner from the moment it gets power. It behaves as protocol.md 11 and 14 say:
@@ -99,6 +125,28 @@ public:
     /// A hardware fault: stops the scan and reports `code` until RESET.
     void enter_protection_stop(std::uint16_t code, Moment now);
 
+    /// It had no power for a while and gets it again at `now`: it boots, and remembers nothing.
+    void restart(const Faults& faults, Moment now);
+
+    /// Which faults it has from `now` on, in place of those it had. What has come to rest because
+    /// of a fault goes on when that is gone; a protection stop lasts until RESET all the same.
+    void set_faults(const Faults& faults, Moment now);
+    [[nodiscard]] const Faults& faults() const { return settings_.faults; }
+
+    /// Lets this happen at `now`. False if it could not: no scan runs whose angle could restart.
+    bool suffer(Incident incident, std::uint32_t value, Moment now);
+
+    [[nodiscard]] const SerialNumber& serial() const { return unit_.serial; }
+
+    /// The mode of the scan that runs; null if none does.
+    [[nodiscard]] const ScanMode* scan_mode() const { return scan_ ? scan_->mode : nullptr; }
+
+    /// What is sent over and over by a scanner with the fault `flood`: its last packet.
+    [[nodiscard]] std::span<const std::uint8_t> flood_piece() const;
+
+    /// What the line did to the measurement bytes that take() gave.
+    [[nodiscard]] const DamageCounters& damage() const { return damage_count_.counters(); }
+
     /// Bytes that found no room in the transmit queue, because nobody took them in time.
     [[nodiscard]] std::uint64_t overrun_bytes() const { return overrun_bytes_; }
 
@@ -109,6 +157,12 @@ private:
         Moment requested;                           // no sample is taken before
         std::optional<MeasurementStream> stream{};  // none: waits for a stable rotation
         bool played_out{};
+        StreamId id{};
+        std::optional<Moment> trips_at{};  // and ends in a protection stop
+    };
+    struct Late {
+        Moment due;
+        Transmitted part;
     };
 
     void serve(const protocol::Request& request, Moment now);
@@ -123,7 +177,14 @@ private:
     void note_motor(bool switched);
     void
     listen_for_autobaud(std::span<const std::uint8_t> bytes, std::uint32_t host_baud, Moment now);
-    void take_burst(Moment now, std::vector<Transmitted>& out);
+    void get_power(Moment now);
+    void trip(std::uint16_t code, Moment now);
+    void plan_trip(Moment from);
+    void arrive(Moment now, std::vector<Transmitted>& out);
+    void damage(Transmitted& part);
+    void send_measured(std::span<const std::uint8_t> bytes, Moment ready);
+    [[nodiscard]] bool is_silent() const;
+    [[nodiscard]] std::string_view banner() const;
     bool advance_scan(Moment now);
     bool advance_playback(Moment now);
     bool begin_stream(Moment now);
@@ -142,12 +203,21 @@ private:
     Autobaud autobaud_;
     TransmitLine line_;
     BadLine bad_line_;
+    DamageCount damage_count_;
+    StreamId counted_{};                 // by it
+    std::vector<std::uint8_t> damaged_;  // what arrives of a part
+    std::vector<Transmitted> sent_;
+    std::deque<Late> late_;
     std::vector<Transmitted> held_;  // by the adapter
     Moment next_burst_{};
     protocol::RequestParser parser_;
     std::optional<Moment> booted_at_;
     std::optional<Moment> next_banner_;
     std::optional<Scan> scan_;
+    std::uint32_t streams_{};
+    std::vector<std::uint8_t> last_packet_;
+    bool halve_next_answer_{};
+    bool banner_pending_{};
     std::uint64_t overrun_bytes_{};
 };
 

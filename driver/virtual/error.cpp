@@ -24,6 +24,10 @@ public:
             return "the recording cannot be written";
         case errc::capture_unusable:
             return "there is no captured scan to play";
+        case errc::control_unavailable:
+            return "the control socket cannot be had";
+        case errc::not_now:
+            return "the command cannot be obeyed now";
         case errc::invalid_option:
             return "an option has a value that makes no sense";
         }

@@ -14,6 +14,8 @@ enum class errc {
     link_unavailable,       ///< the link to the port cannot be made, or its name is taken
     recording_unavailable,  ///< the recording cannot be written
     capture_unusable,       ///< the file cannot be read, or holds no scan to play
+    control_unavailable,    ///< the control socket cannot be made or reached
+    not_now,                ///< a command that cannot be obeyed as things are
     invalid_option,         ///< an option has a value that makes no sense
 };
 

@@ -36,6 +36,10 @@ public:
     /// the next one. `baud` is the speed that the scanner speaks.
     virtual void clean_up_after_host(std::uint32_t baud) = 0;
 
+    /// Takes the port from its host at once, as pulling the cable does. Ends news() with
+    /// operation_aborted. Nothing else is called after it.
+    virtual void close() = 0;
+
     /// The bits a second that the host has set; 0 where there is no such thing.
     [[nodiscard]] virtual std::uint32_t host_baud() const = 0;
 };

@@ -17,6 +17,11 @@ Moment MeasurementStream::packet_ready() const {
     return packet_end() + mode_.sample_duration() / 2;
 }
 
+void MeasurementStream::restart_angle() {
+    restarted_ = true;
+    turns_before_ = start_turns_ - 1.0;  // what is marked by revolution is marked too
+}
+
 const std::vector<std::uint8_t>&
 MeasurementStream::measure(const Motor& motor, Beam& beam, Moment switched_on) {
     constexpr double q8 = 256.0;

@@ -30,6 +30,9 @@ public:
     /// call. `switched_on` is the world's time 0.
     const std::vector<std::uint8_t>& measure(const Motor& motor, Beam& beam, Moment switched_on);
 
+    /// The angle reference is found anew: the next packet says so.
+    void restart_angle();
+
 private:
     ScanMode mode_;
     std::unique_ptr<Packer> packer_;

@@ -20,11 +20,8 @@ bool Motor::turn_at(double goal_hz, Moment now) {
     if (goal_hz == goal_hz_) {
         return false;
     }
-    const double turns_now = even_turns(now);
     const bool was_stable = is_stable(now);
-    hz_then_ = rotation_hz(now);
-    turns_then_ = turns_now;
-    commanded_ = now;
+    count_from(now);
     goal_hz_ = goal_hz;
     if (!is_on()) {
         stable_from_.reset();
@@ -33,6 +30,25 @@ bool Motor::turn_at(double goal_hz, Moment now) {
         stable_from_ = now + std::chrono::ceil<std::chrono::nanoseconds>(ramp);
     }
     return true;
+}
+
+void Motor::set_spin_up(std::chrono::milliseconds spin_up, Moment now) {
+    if (spin_up == traits_.spin_up) {
+        return;
+    }
+    count_from(now);
+    traits_.spin_up = spin_up;
+    if (stable_from_ && *stable_from_ > now) {
+        const std::chrono::duration<double> ramp(ramp_seconds());
+        stable_from_ = now + std::chrono::ceil<std::chrono::nanoseconds>(ramp);
+    }
+}
+
+void Motor::count_from(Moment now) {
+    const double turns_now = even_turns(now);
+    hz_then_ = rotation_hz(now);
+    turns_then_ = turns_now;
+    commanded_ = now;
 }
 
 double Motor::acceleration() const {

@@ -23,6 +23,9 @@ public:
     /// it off. Returns false if that was its goal already.
     bool turn_at(double goal_hz, Moment now);
 
+    /// From `now` on it needs this long from rest to its usual speed.
+    void set_spin_up(std::chrono::milliseconds spin_up, Moment now);
+
     [[nodiscard]] bool is_on() const { return goal_hz_ > 0.0; }
 
     /// Turns made by the time `at` since it was made; the part after the point is where the head
@@ -40,6 +43,7 @@ public:
     [[nodiscard]] bool is_stable(Moment at) const { return stable_from_ && at >= *stable_from_; }
 
 private:
+    void count_from(Moment now);
     [[nodiscard]] double acceleration() const;  // turns per second squared, signed
     [[nodiscard]] double ramp_seconds() const;  // from the last command to an even speed
     [[nodiscard]] double even_turns(Moment at) const;

@@ -46,8 +46,18 @@ MotorDrive::MotorDrive(const Persona& persona, const SerialNumber& serial, bool 
 
 bool MotorDrive::turn_at(double hz, Moment now) {
     const bool was_on = std::exchange(on_, hz > 0.0);
+    wanted_hz_ = hz;
     motor_.turn_at(stalled_ ? 0.0 : hz, now);
     return on_ != was_on;
+}
+
+void MotorDrive::set_stalled(bool stalled, Moment now) {
+    stalled_ = stalled;
+    turn_at(wanted_hz_, now);
+}
+
+void MotorDrive::set_spin_up(std::chrono::milliseconds spin_up, Moment now) {
+    motor_.set_spin_up(spin_up, now);
 }
 
 bool MotorDrive::set_pwm(std::uint16_t pwm, Moment now) {

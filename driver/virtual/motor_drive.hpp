@@ -4,6 +4,7 @@
 #include "driver/virtual/motor.hpp"
 #include "driver/virtual/persona.hpp"
 
+#include <chrono>
 #include <cstdint>
 
 namespace sweepcast::virtual_lidar {
@@ -43,6 +44,12 @@ public:
     bool begin_scan(Moment now);
     bool end_scan(Moment now);
     bool reset(Moment now);
+    /// Something holds it: it slows down and stops, whatever it is told; or lets it go, and it does
+    /// what it was told last.
+    void set_stalled(bool stalled, Moment now);
+    /// From `now` on it needs this long to come up to speed.
+    void set_spin_up(std::chrono::milliseconds spin_up, Moment now);
+
     /// As a host that wants to scan would.
     bool switch_on(Moment now);
 
@@ -56,6 +63,7 @@ private:
     double deviation_;
     bool stalled_;
     bool on_{};
+    double wanted_hz_{};
     Motor motor_;
 };
 

@@ -128,6 +128,12 @@ void Pty::clean_up_after_host(std::uint32_t baud) {
     (void)HostEnd(path_).make_fresh(baud);
 }
 
+void Pty::close() {
+    boost::system::error_code ignored;  // it is closed, whatever the system has to say to it
+    descriptor_.close(ignored);
+    next_look_.cancel();
+}
+
 std::uint32_t Pty::host_baud() const {
     // Asked at our end, the system tells of the other.
     const auto baud = link::line_speed(descriptor_.native_handle());

@@ -30,6 +30,7 @@ public:
     std::size_t write_some(std::span<const std::uint8_t> bytes) override;
     boost::asio::awaitable<void> news() override;
     void clean_up_after_host(std::uint32_t baud) override;
+    void close() override;
     [[nodiscard]] std::uint32_t host_baud() const override;
 
 private:

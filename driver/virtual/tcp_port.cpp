@@ -5,6 +5,7 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/system/system_error.hpp>
 
+#include <chrono>
 #include <utility>
 
 namespace sweepcast::virtual_lidar {
@@ -14,6 +15,7 @@ using asio::ip::tcp;
 
 TcpPort::TcpPort(tcp::acceptor acceptor, std::string url)
     : acceptor_(std::move(acceptor))
+    , next_try_(acceptor_.get_executor())
     , url_(std::move(url)) {}
 
 Result<std::unique_ptr<TcpPort>, Problem>
@@ -32,6 +34,7 @@ TcpPort::listen(const asio::any_io_executor& executor, const ListenAddress& addr
 bool TcpPort::accept() {
     error_code failed;
     auto socket = acceptor_.accept(failed);
+    accept_failed_ = failed && failed != asio::error::would_block;
     if (failed) {
         return false;
     }
@@ -69,6 +72,11 @@ std::size_t TcpPort::write_some(std::span<const std::uint8_t> bytes) {
 asio::awaitable<void> TcpPort::news() {
     if (host_) {
         co_await host_->async_wait(tcp::socket::wait_read, asio::use_awaitable);
+    } else if (accept_failed_) {
+        // For want of descriptors, mostly: the connection still waits, so the acceptor stays ready.
+        constexpr auto pause = std::chrono::milliseconds(100);
+        next_try_.expires_after(pause);
+        co_await next_try_.async_wait(asio::use_awaitable);
     } else {
         co_await acceptor_.async_wait(tcp::acceptor::wait_read, asio::use_awaitable);
     }
@@ -76,5 +84,14 @@ asio::awaitable<void> TcpPort::news() {
 
 // Each connection has its own buffers.
 void TcpPort::clean_up_after_host(std::uint32_t /*baud*/) {}
+
+void TcpPort::close() {
+    error_code ignored;  // they are closed, whatever the system has to say to it
+    if (host_) {
+        host_->close(ignored);
+    }
+    acceptor_.close(ignored);
+    next_try_.cancel();
+}
 
 }  // namespace sweepcast::virtual_lidar

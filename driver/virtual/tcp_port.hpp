@@ -7,6 +7,7 @@
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
 
 #include <memory>
 #include <optional>
@@ -26,6 +27,7 @@ public:
     std::size_t write_some(std::span<const std::uint8_t> bytes) override;
     boost::asio::awaitable<void> news() override;
     void clean_up_after_host(std::uint32_t baud) override;
+    void close() override;
     [[nodiscard]] std::uint32_t host_baud() const override { return 0; }
 
 private:
@@ -33,6 +35,8 @@ private:
     bool accept();
 
     boost::asio::ip::tcp::acceptor acceptor_;
+    boost::asio::steady_timer next_try_;
+    bool accept_failed_{};
     std::optional<boost::asio::ip::tcp::socket> host_;
     std::string url_;
 };

@@ -22,7 +22,12 @@ void TransmitLine::set_baud(std::uint32_t baud) {
     byte_time_ = time_of_byte(baud);
 }
 
-bool TransmitLine::push(Payload payload, std::span<const std::uint8_t> bytes, Moment ready) {
+bool TransmitLine::push(
+    Payload payload,
+    std::span<const std::uint8_t> bytes,
+    Moment ready,
+    const StreamId& stream
+) {
     run_until(ready);
     if (bytes.size() > capacity - queue_.size()) {
         return false;
@@ -31,7 +36,7 @@ bool TransmitLine::push(Payload payload, std::span<const std::uint8_t> bytes, Mo
         return true;
     }
     queue_.insert(queue_.end(), bytes.begin(), bytes.end());
-    runs_.push_back({payload, ready, bytes.size()});
+    runs_.push_back({payload, ready, bytes.size(), stream});
     return true;
 }
 
@@ -77,8 +82,9 @@ void TransmitLine::run_until(Moment now) {
         }
         const auto count = std::min(static_cast<std::size_t>((now - start) / byte_time_), run.left);
         const auto end = std::next(queue_.begin(), static_cast<std::ptrdiff_t>(count));
-        if (sent_.empty() || sent_.back().payload != run.payload) {
-            sent_.push_back({run.payload, {}});
+        if (sent_.empty() || sent_.back().payload != run.payload ||
+            sent_.back().stream != run.stream) {
+            sent_.push_back({run.payload, {}, run.stream});
         }
         sent_.back().bytes.insert(sent_.back().bytes.end(), queue_.begin(), end);
         queue_.erase(queue_.begin(), end);

@@ -1,6 +1,7 @@
 // TransmitLine: the scanner's side of a UART. Bytes leave it at the baud rate and no sooner.
 #pragma once
 
+#include "driver/protocol/answer_type.hpp"
 #include "driver/virtual/motor.hpp"
 
 #include <chrono>
@@ -19,10 +20,18 @@ enum class Payload : std::uint8_t {
     measurement,  ///< packets of a measurement stream
 };
 
+/// Which measurement stream bytes belong to, or arrive in the midst of.
+struct StreamId {
+    std::uint32_t number{};  ///< since the scanner was made, from 1; 0: none
+    protocol::AnswerType answer{};
+    bool operator==(const StreamId&) const = default;
+};
+
 /// Bytes of one kind, in their order on the line.
 struct Transmitted {
     Payload payload{};
     std::vector<std::uint8_t> bytes;
+    StreamId stream{};
 };
 
 /// A bounded queue of bytes and the time at which each has left.
@@ -40,7 +49,12 @@ public:
 
     /// Queues bytes that are there to be sent from `ready` on, behind those of the last push.
     /// Returns false, and queues nothing, if there is no room for all of them.
-    bool push(Payload payload, std::span<const std::uint8_t> bytes, Moment ready);
+    bool push(
+        Payload payload,
+        std::span<const std::uint8_t> bytes,
+        Moment ready,
+        const StreamId& stream = {}
+    );
 
     /// Appends to `out` what has left the line completely by `now` and was not taken before.
     void take(Moment now, std::vector<Transmitted>& out);
@@ -60,6 +74,7 @@ private:
         Payload payload{};
         Moment ready;
         std::size_t left{};
+        StreamId stream;
     };
     void run_until(Moment now);
 

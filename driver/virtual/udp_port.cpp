@@ -62,4 +62,9 @@ asio::awaitable<void> UdpPort::news() {
 
 void UdpPort::clean_up_after_host(std::uint32_t /*baud*/) {}
 
+void UdpPort::close() {
+    error_code ignored;  // it is closed, whatever the system has to say to it
+    socket_.close(ignored);
+}
+
 }  // namespace sweepcast::virtual_lidar

@@ -47,6 +47,66 @@ TEST(AddFault, KnowsEachByItsName) {
     EXPECT_EQ(parsed("protection-stop").health, (protocol::Health{HealthStatus::error, 1}));
     EXPECT_EQ(parsed("protection-stop=0x8001").health.code, 0x8001);
     EXPECT_EQ(parsed("warning=7").health, (protocol::Health{HealthStatus::warning, 7}));
+    EXPECT_TRUE(parsed("deaf").deaf);
+    EXPECT_TRUE(parsed("forced").forced);
+    EXPECT_TRUE(parsed("garbage").garbage);
+    EXPECT_TRUE(parsed("flood").flood);
+    EXPECT_TRUE(parsed("half-answers").half_answers);
+    EXPECT_EQ(parsed("duplicate=0.5").duplicate, 0.5);
+    EXPECT_EQ(parsed("delay").delay, 200ms);
+    EXPECT_EQ(parsed("delay=5000").delay, 5s);
+    EXPECT_EQ(parsed("slow-spin-up").slow_spin_up, 10s);
+    EXPECT_EQ(parsed("slow-spin-up=2.5").slow_spin_up, 2500ms);
+    EXPECT_EQ(parsed("protection-stop-after=0.001").protection_stop_after, 1ms);
+    EXPECT_EQ(parsed("wrong-baud").wrong_baud, 57'600U);
+    EXPECT_EQ(parsed("wrong-baud=9600").wrong_baud, 9'600U);
+    EXPECT_EQ(parsed("lying-length").lying_length, 0x3FFF'FFFFU);
+    EXPECT_EQ(parsed("lying-length=0").lying_length, 0U);
+}
+
+TEST(ClearFault, TakesEachAwayThatCanBeAdded) {
+    for (const auto* text :
+         {"mute",
+          "deaf",
+          "banner",
+          "forced",
+          "motor-stall",
+          "garbage",
+          "flood",
+          "half-answers",
+          "sample-time-zero",
+          "bare-echo",
+          "junk",
+          "leftovers",
+          "noise=0.5",
+          "drop=0.5",
+          "duplicate=0.5",
+          "burst=3",
+          "delay=3",
+          "slow-spin-up=2.5",
+          "warning=0x7",
+          "wrong-baud=9600",
+          "protection-stop=0x8001",
+          "lying-length=0",
+          "protection-stop-after=1.5"}) {
+        auto faults = parsed(text);
+        EXPECT_EQ(faults_text(faults), text);
+        const std::string name(text);
+        ASSERT_TRUE(clear_fault(faults, name.substr(0, name.find('=')))) << text;
+        EXPECT_EQ(faults, Faults{}) << text;
+        EXPECT_EQ(faults_text(faults), "");
+    }
+}
+
+TEST(ClearFault, LeavesTheOthersAndRefusesWhatIsNone) {
+    Faults faults = parsed("noise=0.5");
+    ASSERT_TRUE(add_fault(faults, "warning"));
+    ASSERT_TRUE(clear_fault(faults, "protection-stop"));
+    ASSERT_TRUE(clear_fault(faults, "mute"));
+    EXPECT_EQ(faults_text(faults), "warning=0x1,noise=0.5");
+    const auto refused = clear_fault(faults, "noise=0.5");
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, errc::invalid_option);
 }
 
 TEST(AddFault, AddsToThoseThatAreThere) {
@@ -92,6 +152,19 @@ INSTANTIATE_TEST_SUITE_P(
         "warning=",
         "warning=65536",
         "warning=-1",
+        "duplicate=2",
+        "delay=0",
+        "delay=5001",
+        "slow-spin-up=0",
+        "slow-spin-up=nan",
+        "slow-spin-up=",
+        "protection-stop-after",
+        "protection-stop-after=86401",
+        "wrong-baud=9599",
+        "wrong-baud=-1",
+        "lying-length=1073741824",
+        "lying-length=0x1",
+        "deaf=1",
         "protection-stop=0x",
         "protection-stop=12z"
     )
@@ -185,16 +258,6 @@ TEST(Drop, LosesThatPartOfTheBytes) {
     host.send(Command::scan);
     host.run(2s);
     EXPECT_NEAR(static_cast<double>(host.received().size()), 2 * 2000 * 5 * 0.9, 150.0);
-}
-
-TEST(BadLine, DoesTheSameDamageForTheSameSeed) {
-    const auto damaged = [](std::uint64_t seed) {
-        Bytes bytes(1000, 0x55);
-        BadLine(0.1, 0.1, seed).damage(bytes);
-        return bytes;
-    };
-    EXPECT_EQ(damaged(1), damaged(1));
-    EXPECT_NE(damaged(1), damaged(2));
 }
 
 TEST(SampleTimeZero, IsWhatItSaysOfEveryMode) {

@@ -44,6 +44,11 @@ protected:
     /// Runs the lidar and beside it `host`; when that has ended the lidar is stopped.
     void run_with(std::function<boost::asio::awaitable<void>()> host) {
         tasks_.spawn(lidar_->run());
+        run_with_rest(std::move(host));
+    }
+
+    /// The same of a lidar that runs already.
+    void run_with_rest(std::function<boost::asio::awaitable<void>()> host) {
         tasks_.spawn(host_then_stop(std::move(host)));
         context_.run_for(std::chrono::seconds(10));
         ASSERT_EQ(tasks_.size(), 0U) << "did not end in time";
