@@ -1,6 +1,9 @@
 #include "server/cli/virtual_command.hpp"
 
 #include "driver/async/task_group.hpp"
+#include "driver/virtual/control_socket.hpp"
+#include "driver/virtual/error.hpp"
+#include "driver/virtual/fault_command.hpp"
 #include "driver/virtual/faults.hpp"
 #include "driver/virtual/persona.hpp"
 #include "driver/virtual/virtual_lidar.hpp"
@@ -23,6 +26,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace sweepcast::cli {
 
@@ -49,8 +53,22 @@ A world is a CSV file with the header "angle_deg,distance_mm" and a point a line
 seen from above, from 0 up to 360. Without one you get a living room in which someone walks.
 
 A recording holds the raw bytes of the measurement packets that were sent, without the descriptors.
+A truth file holds a line for each packet that was measured: the number of its scan, its answer type
+and its bytes in hex, as they were before anything damaged them.
 
 Faults (--fault, as often as you like):
+)";
+
+constexpr const char* footer_before_commands = R"(
+Commands, for a lidar that runs (--schedule, or --control and --send):
+)";
+
+constexpr const char* footer_after_commands =
+    R"(  status                   tells what is on (not in a schedule)
+
+A schedule is a list of times from the start (ms, s, m) and commands, with commas between them. A control
+socket takes a command a line and answers each with a line: "ok", or "error: " and why. Signal USR1
+unplugs the lidar, and plugs it in at the next one.
 )";
 
 constexpr const char* examples = R"(
@@ -62,7 +80,11 @@ Examples:
   sweepcast virtual --model t1 --listen udp://127.0.0.1:8089
   sweepcast virtual --model s1 --listen tcp://127.0.0.1:20108
   sweepcast virtual --play bug.capture --loop
-  sweepcast virtual --model s2 --fault noise=0.001 --fault warning=0x8001)";
+  sweepcast virtual --model s2 --fault noise=0.001 --fault warning=0x8001
+  sweepcast virtual --link /tmp/lidar --schedule '3s unplug, 5s replug, 8s fault noise=0.02, 12s clear'
+  sweepcast virtual --link /tmp/lidar --control /tmp/lidar.control
+  sweepcast virtual --control /tmp/lidar.control --send unplug
+  sweepcast virtual --control /tmp/lidar.control --send 'replug /tmp/other' --send status)";
 
 std::string_view motor_of(const virtual_lidar::Persona& persona) {
     switch (persona.motor.control) {
@@ -118,15 +140,64 @@ std::string table_of_models() {
 }
 
 // Runs the lidar to its end, and lets nothing else keep the process alive after it.
-asio::awaitable<void> play(VirtualLidar& lidar, asio::signal_set& signals) {
+asio::awaitable<void>
+play(VirtualLidar& lidar, asio::signal_set& signals, asio::signal_set& plug_signals) {
     co_await lidar.run();
     signals.cancel();
+    plug_signals.cancel();
+}
+
+// At each signal it is unplugged, or plugged in again.
+void plug_at_signals(VirtualLidar& lidar, asio::signal_set& signals) {
+    signals.async_wait([&lidar, &signals](const boost::system::error_code& cancelled, int) {
+        if (cancelled) {
+            return;
+        }
+        const auto obeyed = lidar.is_plugged() ? lidar.obey(virtual_lidar::Unplug{})
+                                               : lidar.obey(virtual_lidar::Replug{});
+        if (!obeyed) {
+            report(obeyed.error());
+        }
+        plug_at_signals(lidar, signals);
+    });
+}
+
+// Tells a virtual lidar that runs what to do, and prints what it answers. Ends at the first command
+// that it does not obey.
+int send(const std::string& control, const std::vector<std::string>& commands) {
+    if (control.empty()) {
+        return report(
+            {make_error_code(virtual_lidar::errc::invalid_option),
+             "which virtual lidar is the command for?",
+             "give the path of its control socket: --control PATH"}
+        );
+    }
+    for (const auto& command : commands) {
+        if (command.find_first_of("\r\n") != std::string::npos) {
+            return report(
+                {make_error_code(virtual_lidar::errc::invalid_option),
+                 "a command is one line",
+                 "give more of them with --send each"}
+            );
+        }
+        const auto answer = virtual_lidar::ask_control_socket(control, command);
+        if (!answer) {
+            return report(answer.error());
+        }
+        if (!answer->starts_with("ok")) {
+            fmt::print(stderr, "sweepcast: {}\n", *answer);
+            return 1;
+        }
+        fmt::print("{}\n", *answer);
+    }
+    return 0;
 }
 
 int run(const VirtualLidarOptions& options) {
     asio::io_context context(1);
     // Before the port is there: a signal that comes early must not leave a link behind.
     asio::signal_set signals(context, SIGINT, SIGTERM);
+    asio::signal_set plug_signals(context, SIGUSR1);
     auto lidar = VirtualLidar::create(context.get_executor(), options, log::make_logger("virtual"));
     if (!lidar) {
         return report(lidar.error());
@@ -138,13 +209,15 @@ int run(const VirtualLidarOptions& options) {
     async::TaskGroup tasks(context.get_executor(), [&](std::exception_ptr thrown) {
         failure = std::move(thrown);
         signals.cancel();
+        plug_signals.cancel();
     });
     signals.async_wait([&lidar](const boost::system::error_code& cancelled, int) {
         if (!cancelled) {
             (*lidar)->stop();
         }
     });
-    tasks.spawn(play(**lidar, signals));
+    plug_at_signals(**lidar, plug_signals);
+    tasks.spawn(play(**lidar, signals, plug_signals));
     context.run();
     if (failure) {
         std::rethrow_exception(failure);
@@ -158,7 +231,11 @@ void add_virtual_command(CLI::App& app, int& exit_code) {
     auto* const command = app.add_subcommand("virtual", description);
     const auto options = std::make_shared<VirtualLidarOptions>();
     const auto list_models = std::make_shared<bool>(false);
-    command->footer(footer_before_faults + virtual_lidar::faults_help() + examples);
+    const auto commands = std::make_shared<std::vector<std::string>>();
+    command->footer(
+        footer_before_faults + virtual_lidar::faults_help() + footer_before_commands +
+        virtual_lidar::fault_commands_help() + footer_after_commands + examples
+    );
     command->add_option("--model", options->model, "Which scanner to play; \"list\" lists them")
         ->capture_default_str();
     command->add_flag("--list-models", *list_models, "List the scanners with their modes, and end");
@@ -171,6 +248,25 @@ void add_virtual_command(CLI::App& app, int& exit_code) {
     command->add_option("--link", options->link, "Make a symbolic link to the port at this path");
     command->add_flag("--any-baud", options->any_baud, "Understand hosts that set another speed");
     command->add_option("--fault", options->faults, "Something that is wrong with it; see below")
+        ->allow_extra_args(false);
+    command
+        ->add_option(
+            "--schedule",
+            options->schedule,
+            "Commands at times from the start: '3s unplug, 5s replug'; see below"
+        )
+        ->allow_extra_args(false);
+    command->add_option(
+        "--control",
+        options->control,
+        "Make a Unix socket at this path that takes commands; see below"
+    );
+    command
+        ->add_option(
+            "--send",
+            *commands,
+            "Send this command to the virtual lidar whose --control is given, and end"
+        )
         ->allow_extra_args(false);
     command->add_option("--world", options->world, "What it sees: a CSV file of points");
     command->add_option(
@@ -194,10 +290,17 @@ void add_virtual_command(CLI::App& app, int& exit_code) {
     );
     command->add_flag("--loop", options->loop, "Play the capture again and again");
     command->add_option("--record", options->recording, "File for the measurement bytes sent");
-    command->callback([options, list_models, &exit_code] {
+    command->add_option(
+        "--truth",
+        options->truth,
+        "File for the packets as they were measured, before any fault"
+    );
+    command->callback([options, list_models, commands, &exit_code] {
         if (*list_models || options->model == "list") {
             fmt::print("{}", table_of_models());
             exit_code = 0;
+        } else if (!commands->empty()) {
+            exit_code = send(options->control, *commands);
         } else {
             exit_code = run(*options);
         }
