@@ -30,7 +30,12 @@ Problem bad_url(std::string_view text, std::string_view what, std::string hint) 
 }
 
 Result<LidarUrl, Problem> parse_virtual(std::string_view text, Parameters& others) {
-    const auto url = boost::urls::parse_uri(text);
+    // A schedule has spaces in it, and people write them as they are.
+    std::string encoded;
+    for (const char c : text) {
+        encoded += c == ' ' ? "%20" : std::string(1, c);
+    }
+    const auto url = boost::urls::parse_uri(encoded);
     if (!url || url->path().empty()) {
         return bad_url(
             text,
@@ -44,6 +49,10 @@ Result<LidarUrl, Problem> parse_virtual(std::string_view text, Parameters& other
             lidar.world = parameter.value;
         } else if (parameter.key == "fault") {
             lidar.faults.emplace_back(parameter.value);
+        } else if (parameter.key == "schedule") {
+            lidar.schedule.emplace_back(parameter.value);
+        } else if (parameter.key == "control") {
+            lidar.control = parameter.value;
         } else {
             others.push_back({std::string(parameter.key), std::string(parameter.value)});
         }
@@ -159,8 +168,8 @@ Result<void, Problem> apply(LidarUrl& url, const link::UrlParameter& parameter) 
         url.text,
         fmt::format("unknown parameter \"{}\"", link::printable(parameter.key)),
         "there are: name=ID, mode=NAME, hz=SPEED; for a serial port also baud=RATE, as in "
-        "/dev/ttyUSB0?baud=256000; for a virtual lidar world=FILE and "
-        "fault=FAULT, as in virtual:a1m8?world=FILE"
+        "/dev/ttyUSB0?baud=256000; for a virtual lidar world=FILE, "
+        "fault=FAULT, schedule=TEXT and control=PATH, as in virtual:a1m8?world=FILE"
     );
 }
 

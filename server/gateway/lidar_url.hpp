@@ -16,8 +16,11 @@ namespace sweepcast::gateway {
 /// A virtual lidar that the gateway starts itself, on a pseudo terminal of its own.
 struct VirtualLidarUrl {
     std::string model{};
-    std::string world{};                ///< file; empty: the built-in room
-    std::vector<std::string> faults{};  ///< as `sweepcast virtual --fault` takes them
+    std::string world{};  ///< file; empty: the built-in room
+    // As `sweepcast virtual` takes them:
+    std::vector<std::string> faults{};
+    std::vector<std::string> schedule{};
+    std::string control{};
 };
 
 /// A lidar of another gateway, by its stream over TCP.
@@ -42,7 +45,8 @@ struct LidarUrl {
     bool is_stand_in{};
 };
 
-/// Reads a link's URL (see link::parse_link_url), or "virtual:a1m8", "virtual:a1m8?world=FILE", or
+/// Reads a link's URL (see link::parse_link_url), or "virtual:a1m8", "virtual:a1m8?world=FILE"
+/// (also "fault=FAULT", "schedule=TEXT" and "control=PATH"; spaces need not be encoded), or
 /// "sweepcast://HOST[:PORT][/ID]" (port 8081), which takes a name only; all others with the
 /// parameters that any lidar may have: "name=left" (1 to 64 of A-Z a-z 0-9 . _ -, not only dots),
 /// "mode=Boost" (name or id), "hz=7.5" (slowest_hz to fastest_hz). The Problem names what is wrong

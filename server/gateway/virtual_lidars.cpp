@@ -2,9 +2,16 @@
 
 #include <boost/asio/post.hpp>
 
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace sweepcast::gateway {
+
+namespace fs = std::filesystem;
 
 Result<std::string, Problem> VirtualLidars::add(
     const VirtualLidarUrl& url,
@@ -18,6 +25,15 @@ Result<std::string, Problem> VirtualLidars::add(
     options.model = url.model;
     options.world = url.world;
     options.faults = url.faults;
+    options.schedule = url.schedule;
+    options.control = url.control;
+    if (!url.schedule.empty() || !url.control.empty()) {
+        auto link = link_for(number);
+        if (!link) {
+            return link;
+        }
+        options.link = std::move(*link);
+    }
     options.seed = number;
     auto created =
         virtual_lidar::VirtualLidar::create(worker_->executor(), options, std::move(log));
@@ -25,8 +41,28 @@ Result<std::string, Problem> VirtualLidars::add(
         return created.error();
     }
     auto& lidar = *lidars_.emplace_back(std::move(*created));
+    // Read before it runs: on its thread it may be plugged in elsewhere.
+    auto port = options.link.empty() ? lidar.port() : options.link;
     boost::asio::post(worker_->executor(), [this, &lidar] { worker_->tasks().spawn(lidar.run()); });
-    return lidar.port();
+    return port;
+}
+
+// A path that stays the same, in a folder that nobody else may write to.
+Result<std::string, Problem> VirtualLidars::link_for(std::uint32_t number) {
+    if (links_.empty()) {
+        std::error_code ignored;  // then it is not there, and cannot be made in
+        auto pattern = fs::temp_directory_path(ignored) / "sweepcast-virtual-XXXXXX";
+        auto path = pattern.string();
+        if (::mkdtemp(path.data()) == nullptr) {
+            return Problem{
+                error_code(errno, boost::system::system_category()),
+                "cannot make a folder for the virtual lidar's link: " +
+                    std::string(std::strerror(errno)),
+                "set TMPDIR to a folder that exists and that you may write to"};
+        }
+        links_ = std::move(path);
+    }
+    return links_ + "/lidar-" + std::to_string(number);
 }
 
 void VirtualLidars::stop() {
@@ -37,6 +73,10 @@ void VirtualLidars::stop() {
     // go first.
     lidars_.clear();
     worker_.reset();
+    if (!links_.empty()) {
+        std::error_code ignored;  // a leftover folder does no harm
+        fs::remove_all(std::exchange(links_, {}), ignored);
+    }
 }
 
 }  // namespace sweepcast::gateway

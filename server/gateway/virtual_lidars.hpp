@@ -22,8 +22,9 @@ public:
         : on_failure_(std::move(on_failure)) {}
     ~VirtualLidars() { stop(); }
 
-    /// Starts one and returns the path of its port. `number` makes its serial number and its noise
-    /// its own. The Problem says what is wrong with model or world.
+    /// Starts one and returns the path of its port; of one that may be unplugged that of a link,
+    /// which is the same again when it is plugged in. `number` makes its serial number and its
+    /// noise its own. The Problem says what is wrong with the URL's parameters.
     Result<std::string, Problem>
     add(const VirtualLidarUrl& url, std::uint32_t number, std::shared_ptr<spdlog::logger> log);
 
@@ -31,7 +32,10 @@ public:
     void stop();
 
 private:
+    Result<std::string, Problem> link_for(std::uint32_t number);
+
     async::TaskGroup::OnFailure on_failure_;
+    std::string links_;  ///< folder for the links of those that have one; empty: not made yet
     std::vector<std::unique_ptr<virtual_lidar::VirtualLidar>> lidars_;
     std::unique_ptr<async::Worker> worker_;  ///< made for the first one
 };

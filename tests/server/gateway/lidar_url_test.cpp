@@ -48,6 +48,17 @@ TEST(ParseLidarUrl, ReadsTheFaultsOfAVirtualLidar) {
     );
 }
 
+TEST(ParseLidarUrl, ReadsWhatAVirtualLidarIsToSufferAndWhen) {
+    const auto url = parse_lidar_url(
+        "virtual:a1m8?schedule=5s unplug,7s replug&schedule=9s%20clear&control=/tmp/c&name=left"
+    );
+    ASSERT_TRUE(url);
+    const auto& lidar = std::get<VirtualLidarUrl>(url->where);
+    EXPECT_THAT(lidar.schedule, testing::ElementsAre("5s unplug,7s replug", "9s clear"));
+    EXPECT_EQ(lidar.control, "/tmp/c");
+    EXPECT_EQ(url->name, "left");
+}
+
 TEST(ParseLidarUrl, ReadsAnotherGatewaysLidar) {
     const auto url = parse_lidar_url("sweepcast://robot:9000/A0E1C2D3?name=attic");
     ASSERT_TRUE(url);
