@@ -184,8 +184,10 @@ int send(const std::string& control, const std::vector<std::string>& commands) {
         if (!answer) {
             return report(answer.error());
         }
+        constexpr std::string_view error = "error: ";
         if (!answer->starts_with("ok")) {
-            fmt::print(stderr, "sweepcast: {}\n", *answer);
+            const bool marked = answer->starts_with(error);
+            fmt::print(stderr, "sweepcast: {}\n", answer->substr(marked ? error.size() : 0));
             return 1;
         }
         fmt::print("{}\n", *answer);
