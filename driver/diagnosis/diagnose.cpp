@@ -105,7 +105,7 @@ asio::awaitable<LinkPtr> Walk::open_port() {
     PortLook look;
     look.path = serial_->path;
     look.error = link::find_open_obstacle(look.path);
-    look.facts = link::gather_port_facts(look.path);
+    look.facts = co_await link::look_up_port_facts(look.path);
     std::vector<Finding> findings{
         judge_port(look),
         judge_permission(look),
@@ -120,7 +120,7 @@ asio::awaitable<LinkPtr> Walk::open_port() {
             findings.push_back({Step::open, Verdict::ok, "8N1, raw, for us alone"});
         } else {
             // Only trying shows what the device rules of a container or another user's lock forbid.
-            look.facts = link::gather_port_facts(look.path);
+            look.facts = co_await link::look_up_port_facts(look.path);
             auto finding = judge_failed_opening(look, link.error());
             std::erase_if(findings, [&](const auto& each) { return each.step >= finding.step; });
             findings.push_back(std::move(finding));

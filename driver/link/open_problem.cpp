@@ -1,10 +1,14 @@
 // One text per cause of not opening a port.
 #include "driver/link/open_problem.hpp"
 
+#include "driver/async/blocking.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <fcntl.h>
+#include <functional>
 #include <grp.h>
 #include <iterator>
 #include <pwd.h>
@@ -12,6 +16,7 @@
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
+#include <utility>
 
 namespace sweepcast::link {
 
@@ -202,6 +207,16 @@ PortFacts gather_port_facts(const std::string& path) {
     facts.ports = list_usb_ports();
     facts.own_pid = ::getpid();
     return facts;
+}
+
+boost::asio::awaitable<PortFacts> look_up_port_facts(std::string path) {
+    constexpr auto limit = std::chrono::seconds(2);
+    std::string lane = "facts of " + path;
+    std::function<PortFacts()> gather = [path] { return gather_port_facts(path); };
+    const auto deadline = std::chrono::steady_clock::now() + limit;
+    auto facts =
+        co_await async::run_blocking<PortFacts>(std::move(lane), deadline, std::move(gather));
+    co_return facts ? std::move(*facts) : PortFacts{};
 }
 
 int find_open_obstacle(const std::string& path) {

@@ -6,6 +6,8 @@
 #include "driver/link/port_list.hpp"
 #include "driver/protocol/result.hpp"
 
+#include <boost/asio/awaitable.hpp>
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -27,6 +29,11 @@ struct PortFacts {
 
 /// Asks the system about `path`.
 PortFacts gather_port_facts(const std::string& path);
+
+/// As gather_port_facts(), but on another thread: looking through all processes takes a while.
+/// Gives nothing of what the system does not tell within two seconds.
+/// Throws boost::system::system_error (operation_aborted) if the coroutine is cancelled meanwhile.
+boost::asio::awaitable<PortFacts> look_up_port_facts(std::string path);
 
 /// What forbids us to read and write `path`, without opening it, which would disturb others: an
 /// errno value, 0 if nothing does.
