@@ -171,6 +171,28 @@ PortsThere look_around(
     return there;
 }
 
+std::vector<std::string>
+ports_worth_a_look(const std::vector<std::string>& patterns, const SystemRoots& roots) {
+    std::vector<std::string> paths;
+    std::set<std::string> nodes;
+    const auto add = [&](const std::string& path) {
+        std::error_code not_there;
+        if (paths.size() < most_ports && fs::is_character_file(path, not_there) &&
+            nodes.insert(device_node(path)).second) {
+            paths.push_back(path);
+        }
+    };
+    for (const auto& usb : list_candidate_ports(roots)) {
+        add(usb.path);
+    }
+    for (const auto& pattern : patterns) {
+        for (const auto& path : expand(pattern)) {
+            add(path);
+        }
+    }
+    return paths;
+}
+
 std::string place_key(const LinkUrl& url) {
     if (const auto* serial = std::get_if<SerialPlace>(&url.where)) {
         return device_node(serial->path);

@@ -62,6 +62,12 @@ PortsThere look_around(
     const std::filesystem::path& proc = "/proc"
 );
 
+/// The ports behind USB adapters that RPLIDARs are sold with, and the devices that the patterns
+/// match, each device file once and no more than most_ports. Cheap: nobody is asked who has them
+/// open.
+std::vector<std::string>
+ports_worth_a_look(const std::vector<std::string>& patterns, const SystemRoots& roots = {});
+
 /// One text for all names of a place: the device file behind a path, links resolved, or scheme,
 /// host and port. Two links of the same key would fight for one device.
 std::string place_key(const LinkUrl& url);

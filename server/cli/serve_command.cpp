@@ -123,6 +123,7 @@ int serve(const ServeArguments& arguments) {
     }
     stand_in_for_none(*choice, *log);
     options->lidars = std::move(choice->lidars);
+    options->patterns = std::move(choice->patterns);
     auto gateway = gateway::Gateway::start(std::move(*options), log::make_logger);
     if (!gateway) {
         return report(gateway.error());

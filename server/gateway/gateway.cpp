@@ -105,7 +105,8 @@ Gateway::start(GatewayOptions options, const MakeLogger& make_logger) {
 Gateway::Gateway(GatewayOptions options, const MakeLogger& make_logger)
     : options_(std::move(options))
     , log_(make_logger("gateway"))
-    , virtual_lidars_(log_failure(log_)) {
+    , virtual_lidars_(log_failure(log_))
+    , ports_(options_.patterns, log_failure(log_), log_) {
     std::vector<hub::Hub::Executor> executors;
     for (std::size_t i = 0; i < options_.threads; ++i) {
         workers_.push_back(
@@ -266,7 +267,6 @@ Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make
         .url = url.text,
         .name = url.name,
         .port_name = name,
-        .serial_port = {},
         .is_virtual = false,
         .is_stand_in = url.is_stand_in,
         .port = {}};
@@ -280,11 +280,11 @@ Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make
         place.is_virtual = true;
     } else {
         way = std::get<link::LinkUrl>(url.where);
-        const auto* port = std::get_if<link::SerialPlace>(&way.where);
-        place.serial_port = port != nullptr ? port->path : "";
     }
     const auto executor = workers_[(number - 1) % workers_.size()]->executor();
-    place.port = std::make_unique<LidarPort>(executor, std::move(way));
+    const bool can_move = !place.is_virtual && std::holds_alternative<link::SerialPlace>(way.where);
+    place.port = can_move ? std::make_unique<LidarPort>(executor, std::move(way), ports_, number)
+                          : std::make_unique<LidarPort>(executor, std::move(way));
     return place;
 }
 
@@ -298,6 +298,7 @@ void Gateway::stop() {
         }
     }
     stop_lidars();
+    ports_.stop();
     end_sessions();
     for (auto& worker : workers_) {
         worker->stop();

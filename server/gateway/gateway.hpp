@@ -6,6 +6,7 @@
 #include "server/gateway/gateway_lidar.hpp"
 #include "server/gateway/lidar_ids.hpp"
 #include "server/gateway/lidar_memory.hpp"
+#include "server/gateway/lidar_ports.hpp"
 #include "server/gateway/lidar_url.hpp"
 #include "server/gateway/managed_lidar.hpp"
 #include "server/gateway/virtual_lidars.hpp"
@@ -28,6 +29,8 @@ struct GatewayOptions {
     boost::asio::ip::tcp::endpoint http;
     boost::asio::ip::tcp::endpoint tcp;
     std::vector<LidarUrl> lidars;
+    /// Ports at which to look, besides USB ones, for a lidar that left its own.
+    std::vector<std::string> patterns;
     device::DeviceOptions device;
     /// What is known of line speeds, and what is learnt of them.
     std::shared_ptr<LidarMemory> memory{std::make_shared<LidarMemory>()};
@@ -87,6 +90,7 @@ private:
     std::unique_ptr<hub::Hub> hub_;
     LidarIds ids_;
     VirtualLidars virtual_lidars_;
+    LidarPorts ports_;
     std::vector<std::unique_ptr<GatewayLidar>> lidars_;
     std::vector<api::Api> apis_;  ///< one a worker
     std::unique_ptr<net::Listener> http_;

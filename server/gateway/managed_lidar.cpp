@@ -7,6 +7,7 @@
 
 #include <boost/asio/post.hpp>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -30,6 +31,7 @@ ManagedLidar::ManagedLidar(
     , memory_(memory)
     , log_(std::move(log))
     , frames_(hub.variants(), place_.number)
+    , path_(place_.port->path())
     , stopped_(ended_.get_future())
     , device_(
           worker.executor(),
@@ -106,6 +108,7 @@ asio::awaitable<void> ManagedLidar::live() {
 void ManagedLidar::on_state(const device::DeviceState& state) {
     auto snapshot = std::make_shared<hub::LidarSnapshot>();
     snapshot->number = place_.number;
+    follow_port();
     snapshot->port_name = place_.port_name;
     snapshot->url = place_.url;
     snapshot->is_virtual = place_.is_virtual;
@@ -118,14 +121,26 @@ void ManagedLidar::on_state(const device::DeviceState& state) {
     hub_.publish(hub::StateNews{snapshot_, stream::state_message(*snapshot_)});
 }
 
+/// Names the port where the lidar is now, if it has moved.
+void ManagedLidar::follow_port() {
+    const auto path = place_.port->path();
+    if (path == path_) {
+        return;
+    }
+    path_ = path;
+    const auto parameters = place_.url.find('?');
+    place_.url.replace(0, std::min(parameters, place_.url.size()), path);
+    place_.port_name = link::short_name(place_.port->way());
+}
+
 /// Remembers where the lidar is and how fast it speaks.
 void ManagedLidar::remember(const device::DeviceState& state) {
-    if (!state.info || state.line.baud == 0 || place_.serial_port.empty()) {
+    if (!state.info || state.line.baud == 0 || place_.is_virtual) {
         return;
     }
     const auto noted = memory_.note(
         protocol::serial_text(state.info->serial),
-        place_.serial_port,
+        place_.port->path(),
         state.line.baud
     );
     if (!noted) {

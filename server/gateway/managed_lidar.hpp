@@ -27,8 +27,6 @@ struct LidarPlace {
     std::string url;
     std::string name;  ///< that its user gave it; empty: it goes by its serial number
     std::string port_name;
-    std::string
-        serial_port;  ///< its path, to remember the line speed by; empty: not to be remembered
     bool is_virtual{};
     bool is_stand_in{};
     std::unique_ptr<LidarPort> port;  ///< on the executor of the lidar's worker
@@ -62,6 +60,7 @@ public:
 
 private:
     void on_state(const device::DeviceState& state) override;
+    void follow_port();
     void remember(const device::DeviceState& state);
     void claim_id(const std::optional<protocol::DeviceInfo>& info);
     void on_sweep(device::CapturedSweep sweep) override;
@@ -77,6 +76,7 @@ private:
     hub::LidarFrames frames_;
     hub::LidarSnapshotPtr snapshot_;
     std::string id_;
+    std::string path_;       ///< of its serial port, as place_ tells it
     std::string named_for_;  ///< the serial number that id_ comes from; empty: the port's name
     bool started_{};
     std::promise<void> ended_;

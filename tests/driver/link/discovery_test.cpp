@@ -178,6 +178,19 @@ TEST_F(LookAroundTest, TellsWhoHasAPortOpenUnderEachOfItsNames) {
     EXPECT_EQ(there.patterns.at(1).ports.at(0).holder, "minicom (process 812)");
 }
 
+TEST_F(LookAroundTest, FindsEachDeviceWorthALookOnce) {
+    const PtyPair pty;
+    scratch_.link("lidar-left", pty.path());
+    scratch_.file("lidar-notes", "hello");
+    scratch_.link("lidar-old", scratch_.root() / "gone");
+    const SystemRoots nothing{scratch_.root() / "sys", scratch_.root() / "dev"};
+    const auto left = (scratch_.root() / "lidar-left").string();
+    EXPECT_THAT(
+        ports_worth_a_look({(scratch_.root() / "lidar-*").string(), pty.path()}, nothing),
+        ElementsAre(left)
+    );
+}
+
 TEST(PlaceKey, IsTheSameForAllNamesOfAPlace) {
     const ScratchDirectory scratch;
     const auto file = scratch.file("port", "").string();

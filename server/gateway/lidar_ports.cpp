@@ -1,0 +1,270 @@
+#include "server/gateway/lidar_ports.hpp"
+
+#include "driver/device/find_baud.hpp"
+#include "driver/link/device_node.hpp"
+#include "driver/link/discovery.hpp"
+#include "driver/link/open_link.hpp"
+#include "driver/protocol/reply.hpp"
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_future.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace sweepcast::gateway {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+constexpr auto look_interval = 250ms;
+constexpr auto ask_again_after = 300ms;
+/// A lidar that was just plugged in boots first.
+constexpr auto ask_for = 15s;
+constexpr auto ends_within = 200ms;
+
+std::string shortened(const std::string& serial) {
+    constexpr std::size_t digits = 8;
+    return serial.substr(0, digits);
+}
+
+/// The serial number of the lidar that answers at `path`; nothing if none does.
+asio::awaitable<std::optional<std::string>>
+ask_serial(std::string path, std::vector<std::uint32_t> baud_hints) {
+    const auto bauds = device::bauds_to_try(baud_hints);
+    link::LinkUrl url{path, link::SerialPlace{path, {}}};
+    auto link =
+        co_await link::open_link(co_await asio::this_coro::executor, std::move(url), bauds.front());
+    if (!link) {
+        co_return std::nullopt;
+    }
+    device::Conversation talk(**link);
+    const auto found = co_await device::find_baud(talk, bauds);
+    if (!found) {
+        co_return std::nullopt;
+    }
+    co_return protocol::serial_text(found->info.serial);
+}
+
+}  // namespace
+
+LidarPorts::LidarPorts(
+    std::vector<std::string> patterns,
+    const async::TaskGroup::OnFailure& on_failure,
+    std::shared_ptr<spdlog::logger> log
+)
+    : patterns_(std::move(patterns))
+    , log_(std::move(log))
+    , worker_(std::make_unique<async::Worker>("lidar search", on_failure)) {
+    wanted_ = std::make_unique<async::Notifier>(worker_->executor());
+    for (const auto& path : link::ports_worth_a_look(patterns_)) {
+        known_.insert_or_assign(link::device_node(path), Known{link::PathLook(path)});
+    }
+    asio::post(worker_->executor(), [this] { worker_->tasks().spawn(search()); });
+}
+
+LidarPorts::~LidarPorts() {
+    stop();
+}
+
+void LidarPorts::stop() {
+    if (std::exchange(stopped_, true)) {
+        return;
+    }
+    auto end = [](async::TaskGroup& tasks) -> asio::awaitable<bool> {
+        tasks.cancel();
+        co_return co_await tasks.join(ends_within);
+    };
+    (void)asio::co_spawn(worker_->executor(), end(worker_->tasks()), asio::use_future).get();
+    worker_->stop();
+}
+
+void LidarPorts::add(std::uint32_t number, const std::string& path, std::function<void()> on_move) {
+    const std::scoped_lock lock(mutex_);
+    lidars_.insert_or_assign(number, Lidar{path, std::move(on_move)});
+}
+
+std::string LidarPorts::path_of(std::uint32_t number) const {
+    const std::scoped_lock lock(mutex_);
+    return lidars_.at(number).path;
+}
+
+void LidarPorts::lost(std::uint32_t number) {
+    const std::scoped_lock lock(mutex_);
+    lidars_.at(number).in_hand = false;
+}
+
+void LidarPorts::seek(std::uint32_t number, std::uint32_t baud) {
+    const std::scoped_lock lock(mutex_);
+    auto& lidar = lidars_.at(number);
+    lidar.in_hand = false;
+    lidar.baud = baud;
+    if (lidar.serial.empty() || std::exchange(lidar.sought, true)) {
+        return;
+    }
+    asio::post(worker_->executor(), [this] { wanted_->notify(); });
+}
+
+bool LidarPorts::is_it(std::uint32_t number, const std::string& path, const std::string& serial) {
+    const std::scoped_lock lock(mutex_);
+    auto& lidar = lidars_.at(number);
+    if (lidar.path != path) {  // moved since: of two that swapped, the other one told
+        return false;
+    }
+    if (lidar.serial == serial) {
+        take(lidar, serial);
+        return true;
+    }
+    auto* other = owner_of(serial);
+    if (other != nullptr && !other->in_hand) {
+        move(lidar, other->path);
+        move(*other, path);
+        return false;
+    }
+    if (lidar.serial.empty()) {
+        take(lidar, serial);
+        return true;
+    }
+    if (!lidar.replaced) {
+        log_->warn(
+            "{}: lidar {} is there, and not {}: looking for that elsewhere first",
+            lidar.path,
+            shortened(serial),
+            shortened(lidar.serial)
+        );
+        lidar.replaced = Clock::now();
+    }
+    if (Clock::now() - *lidar.replaced < adopt_after) {
+        return false;
+    }
+    log_->info(
+        "{}: lidar {} takes the place of {}",
+        lidar.path,
+        shortened(serial),
+        shortened(lidar.serial)
+    );
+    take(lidar, serial);
+    return true;
+}
+
+/// The lidar of that serial number. Call with mutex_ held, as all of these.
+LidarPorts::Lidar* LidarPorts::owner_of(const std::string& serial) {
+    const auto found = std::ranges::find_if(lidars_, [&](const auto& each) {
+        return each.second.serial == serial;
+    });
+    return found == lidars_.end() ? nullptr : &found->second;
+}
+
+void LidarPorts::take(Lidar& lidar, const std::string& serial) {
+    lidar.serial = serial;
+    lidar.in_hand = true;
+    lidar.sought = false;
+    lidar.replaced.reset();
+}
+
+void LidarPorts::move(Lidar& lidar, const std::string& path) {
+    log_->info("lidar {} is at {} now, and not at {}", shortened(lidar.serial), path, lidar.path);
+    lidar.path = path;
+    lidar.sought = false;
+    lidar.replaced.reset();
+    lidar.on_move();
+}
+
+bool LidarPorts::is_taken(const std::string& node) const {
+    return std::ranges::any_of(lidars_, [&](const auto& each) {
+        return link::device_node(each.second.path) == node;
+    });
+}
+
+bool LidarPorts::any_sought() const {
+    const std::scoped_lock lock(mutex_);
+    return std::ranges::any_of(lidars_, [](const auto& each) { return each.second.sought; });
+}
+
+std::vector<std::uint32_t> LidarPorts::sought_bauds() const {
+    const std::scoped_lock lock(mutex_);
+    std::vector<std::uint32_t> bauds;
+    for (const auto& [number, lidar] : lidars_) {
+        if (lidar.sought) {
+            bauds.push_back(lidar.baud);
+        }
+    }
+    return bauds;
+}
+
+/// A lidar of that serial number answered at `path`.
+void LidarPorts::answered(const std::string& path, const std::string& serial) {
+    if (serial.empty()) {
+        return;
+    }
+    const std::scoped_lock lock(mutex_);
+    auto* lidar = owner_of(serial);
+    if (lidar != nullptr && lidar->sought && !is_taken(link::device_node(path))) {
+        move(*lidar, path);
+    }
+}
+
+asio::awaitable<void> LidarPorts::search() {
+    for (;;) {
+        if (any_sought()) {
+            look_around();
+        }
+        const auto next = any_sought() ? Clock::now() + look_interval : Clock::time_point::max();
+        co_await wanted_->wait_until(next);
+    }
+}
+
+/// Asks at each port that newly appeared who is there.
+void LidarPorts::look_around() {
+    std::erase_if(known_, [](const auto& each) {
+        return link::PathLook(each.first) != each.second.look;
+    });
+    for (const auto& path : link::ports_worth_a_look(patterns_)) {
+        const auto node = link::device_node(path);
+        const link::PathLook look(path);
+        const auto known = known_.find(node);
+        if (known != known_.end() && known->second.look == look) {
+            answered(path, known->second.serial);
+            continue;
+        }
+        {
+            const std::scoped_lock lock(mutex_);
+            if (!look.there() || is_taken(node)) {
+                continue;
+            }
+        }
+        known_.insert_or_assign(node, Known{look});
+        worker_->tasks().spawn(ask(path, look));
+    }
+}
+
+/// Asks until someone answers, nobody is sought, or it is in vain.
+asio::awaitable<void> LidarPorts::ask(std::string path, link::PathLook look) {
+    const auto node = link::device_node(path);
+    const auto give_up = Clock::now() + ask_for;
+    log_->info("looking for a lidar on {}, which newly appeared", path);
+    async::Notifier nothing(worker_->executor());
+    while (any_sought() && Clock::now() < give_up && link::PathLook(path) == look) {
+        auto hints = sought_bauds();
+        const auto serial = co_await ask_serial(path, std::move(hints));
+        if (serial) {
+            log_->info("{}: lidar {}", path, shortened(*serial));
+            known_.insert_or_assign(node, Known{look, *serial});
+            answered(path, *serial);
+            co_return;
+        }
+        co_await nothing.wait_until(Clock::now() + ask_again_after);
+    }
+    // Not known then who is there: it is asked again for the next one that is sought.
+    const auto known = known_.find(node);
+    if (known != known_.end() && known->second.look == look && !any_sought()) {
+        known_.erase(known);
+    }
+}
+
+}  // namespace sweepcast::gateway

@@ -1,0 +1,105 @@
+// LidarPorts: at which serial port each lidar of the gateway is. Looks for one whose port is gone,
+// or has another lidar now, at ports that newly appeared: there it is asked for its serial number.
+#pragma once
+
+#include "driver/async/notifier.hpp"
+#include "driver/async/worker.hpp"
+#include "driver/link/path_watch.hpp"
+
+#include <boost/asio/awaitable.hpp>
+#include <spdlog/logger.h>
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace sweepcast::gateway {
+
+/// Safe from any thread; looks on a thread of its own, so that no lidar waits for it.
+class LidarPorts {
+public:
+    /// How long another lidar on the port of one that is known is left alone, before it is taken in
+    /// its place.
+    static constexpr std::chrono::seconds adopt_after{3};
+
+    /// Looks at USB ports that a lidar may be behind and at what matches `patterns`, but not at
+    /// those that are there now: lidars were looked for there before.
+    LidarPorts(
+        std::vector<std::string> patterns,
+        const async::TaskGroup::OnFailure& on_failure,
+        std::shared_ptr<spdlog::logger> log
+    );
+    ~LidarPorts();
+    LidarPorts(const LidarPorts&) = delete;
+    LidarPorts& operator=(const LidarPorts&) = delete;
+
+    /// Ends the search. No on_move is called any more.
+    void stop();
+
+    /// Lidar `number` is expected at `path`. `on_move` is called, on any thread, when it is
+    /// elsewhere.
+    void add(std::uint32_t number, const std::string& path, std::function<void()> on_move);
+
+    /// Where it is, as far as is known.
+    [[nodiscard]] std::string path_of(std::uint32_t number) const;
+
+    /// Nobody answers for the lidar now.
+    void lost(std::uint32_t number);
+
+    /// The port of lidar `number` is gone, or it was refused what is there: looks for it, if its
+    /// serial number is known. It spoke at `baud`.
+    void seek(std::uint32_t number, std::uint32_t baud);
+
+    /// The lidar of that serial number answers at `path`, where lidar `number` was: is it that one?
+    /// If it is another of the gateway's, that gets the port; if it is a stranger, it is taken only
+    /// once the one that is known was not found elsewhere for `adopt_after`.
+    [[nodiscard]] bool
+    is_it(std::uint32_t number, const std::string& path, const std::string& serial);
+
+private:
+    struct Lidar {
+        std::string path;
+        std::function<void()> on_move;
+        std::string serial{};  ///< empty: not known yet
+        std::uint32_t baud{};
+        bool in_hand{};
+        bool sought{};
+        /// Since when another one is at its port.
+        std::optional<std::chrono::steady_clock::time_point> replaced{};
+    };
+    /// A port that was looked at: as what, and who answered.
+    struct Known {
+        link::PathLook look;
+        std::string serial{};
+    };
+
+    Lidar* owner_of(const std::string& serial);
+    void take(Lidar& lidar, const std::string& serial);
+    void move(Lidar& lidar, const std::string& path);
+    [[nodiscard]] bool is_taken(const std::string& node) const;
+    [[nodiscard]] bool any_sought() const;
+    [[nodiscard]] std::vector<std::uint32_t> sought_bauds() const;
+    void answered(const std::string& path, const std::string& serial);
+
+    boost::asio::awaitable<void> search();
+    boost::asio::awaitable<void> ask(std::string path, link::PathLook look);
+    void look_around();
+
+    std::vector<std::string> patterns_;
+    std::shared_ptr<spdlog::logger> log_;
+    mutable std::mutex mutex_;
+    std::map<std::uint32_t, Lidar> lidars_;
+    std::map<std::string, Known> known_;       ///< by device file; of the searching thread
+    std::unique_ptr<async::Notifier> wanted_;  ///< on the worker, whose coroutines it outlives
+    std::unique_ptr<async::Worker> worker_;
+    bool stopped_{};
+};
+
+}  // namespace sweepcast::gateway
