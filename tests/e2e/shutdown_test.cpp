@@ -49,19 +49,21 @@ TEST(Shutdown, WorksWithNoLidarThere) {
     EXPECT_EQ(gateway.process.wait(), 0);
 }
 
-TEST(Shutdown, ANextGatewayTakesOverAfterAKill) {
-    VirtualLidarProcess lidar;
-    {
+class TakeOverTest : public testing::TestWithParam<std::string> {};
+
+TEST_P(TakeOverTest, TheNextGatewayScansAfterAKillInMidScan) {
+    const VirtualLidarProcess lidar({"--model", GetParam()});
+    for (int i = 0; i < 4; ++i) {
         GatewayProcess gateway({"--lidar", lidar.port});
         Subscriber client("tcp://" + gateway.tcp);
         client.subscribe();
         client.next_sweep();
-    }  // killed in mid-scan: the lidar goes on sending
-    GatewayProcess gateway({"--lidar", lidar.port});
-    Subscriber client("tcp://" + gateway.tcp);
-    client.subscribe();
-    client.next_sweep();
+        gateway.process.signal(SIGKILL);  // the lidar goes on sending
+        EXPECT_EQ(gateway.process.wait(), 128 + SIGKILL);
+    }
 }
+
+INSTANTIATE_TEST_SUITE_P(Models, TakeOverTest, testing::Values("a1m8", "c1", "s2"));
 
 }  // namespace
 }  // namespace sweepcast::test
