@@ -62,7 +62,8 @@ struct VirtualLidarStatus {
     std::uint64_t replugs{};
     DamageCounters damage{};  ///< by noise, loss and doubling on the line
     /// Measurement and other bytes that the host did not read in time. What is lost so damages
-    /// packets too, which `damage` does not tell.
+    /// packets too, which `damage` does not tell. Nor do either tell what a flood adds, or what a
+    /// host with another speed hears.
     std::uint64_t unread_bytes{};
 };
 

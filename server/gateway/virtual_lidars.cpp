@@ -4,7 +4,6 @@
 
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -50,14 +49,15 @@ Result<std::string, Problem> VirtualLidars::add(
 // A path that stays the same, in a folder that nobody else may write to.
 Result<std::string, Problem> VirtualLidars::link_for(std::uint32_t number) {
     if (links_.empty()) {
-        std::error_code ignored;  // then it is not there, and cannot be made in
-        auto pattern = fs::temp_directory_path(ignored) / "sweepcast-virtual-XXXXXX";
-        auto path = pattern.string();
-        if (::mkdtemp(path.data()) == nullptr) {
+        std::error_code failed;
+        auto path = (fs::temp_directory_path(failed) / "sweepcast-virtual-XXXXXX").string();
+        if (!failed && ::mkdtemp(path.data()) == nullptr) {
+            failed.assign(errno, std::generic_category());
+        }
+        if (failed) {
             return Problem{
-                error_code(errno, boost::system::system_category()),
-                "cannot make a folder for the virtual lidar's link: " +
-                    std::string(std::strerror(errno)),
+                make_error_code(boost::system::errc::io_error),
+                "cannot make a folder for the virtual lidar's link: " + failed.message(),
                 "set TMPDIR to a folder that exists and that you may write to"};
         }
         links_ = std::move(path);

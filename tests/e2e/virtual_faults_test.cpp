@@ -127,6 +127,8 @@ TEST_F(VirtualFaultsTest, AGatewaysOwnVirtualLidarIsUnpluggedByItsSchedule) {
     });
     client.wait_for_state(v1::Lidar::SCANNING);
     client.next_sweep();
+    gateway.process.signal(SIGTERM);  // killed, it would leave the folder of its link behind
+    EXPECT_EQ(gateway.process.wait(), 0);
 }
 
 TEST_F(VirtualFaultsTest, AGatewaysOwnVirtualLidarTakesCommands) {

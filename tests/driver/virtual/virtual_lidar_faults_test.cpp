@@ -4,6 +4,7 @@
 #include "tests/driver/virtual/virtual_lidar_fixture.hpp"
 
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ip/udp.hpp>
 #include <boost/asio/redirect_error.hpp>
 #include <gmock/gmock.h>
 
@@ -238,6 +239,27 @@ TEST_F(VirtualLidarFaults, OnTheNetworkItCutsAndRefusesAndIsThereAgain) {
         ip::tcp::socket again(context_);
         co_await again.async_connect(place, asio::use_awaitable);
         co_await logged("opened by a host");
+    });
+}
+
+TEST_F(VirtualLidarFaults, WithEthernetOfItsOwnItIsThereAgainAtTheSameAddress) {
+    create({.model = "t1", .listen = "udp://127.0.0.1:0"});
+    run_with([this]() -> asio::awaitable<void> {
+        const auto port = lidar_->port();
+        obey("unplug");
+        obey("replug");
+        EXPECT_EQ(lidar_->port(), port);
+        const auto address = parse_listen_address(port, Connection::ethernet);
+        ip::udp::socket host(context_, ip::udp::v4());
+        host.connect(ip::udp::endpoint(address->address, address->port));
+        const auto request = protocol::encode({Command::get_health, {}});
+        const auto boot_time = find_persona("t1")->boot_time;
+        asio::steady_timer booting(context_, boot_time + 50ms);
+        co_await booting.async_wait(asio::use_awaitable);
+        co_await host.async_send(asio::buffer(request), asio::use_awaitable);
+        Bytes answer(64);
+        answer.resize(co_await host.async_receive(asio::buffer(answer), asio::use_awaitable));
+        EXPECT_GE(answer.size(), 7U);
     });
 }
 
