@@ -14,7 +14,8 @@
 
 namespace sweepcast::link {
 
-/// How long finding a host and connecting to it may take, in all, unless told otherwise.
+/// How long opening a port, or finding a host and connecting to it, may take in all, unless told
+/// otherwise.
 inline constexpr std::chrono::milliseconds connect_limit{3000};
 
 /// Opens a serial port at `baud` bits per second (see open_serial; the speed in the URL is the

@@ -15,8 +15,8 @@ struct PortHolder {
 };
 
 /// The processes that have `port` open, by rising pid. Only those that we may look into: without
-/// root, our own user's. Walks all of `proc`, some milliseconds' work: for when opening failed, or
-/// nothing answers.
+/// root, our own user's. Walks all of `proc`, some milliseconds' work or more: not on a worker's
+/// thread.
 std::vector<PortHolder>
 find_port_holders(const std::string& port, const std::filesystem::path& proc = "/proc");
 

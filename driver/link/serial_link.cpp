@@ -134,10 +134,10 @@ boost::asio::awaitable<Result<std::unique_ptr<Link>, Problem>> open_serial(
     std::uint32_t baud,
     Deadline deadline
 ) {
-    using Opened = Result<OpenPort, Problem>;
-    std::function<Opened()> open = [path, baud] { return open_port(path, baud); };
+    using Tried = Result<OpenPort, Problem>;
+    std::function<Tried()> open = [path, baud] { return open_port(path, baud); };
     auto lane = device_node(path);
-    auto opened = co_await async::run_blocking<Opened>(std::move(lane), deadline, std::move(open));
+    auto opened = co_await async::run_blocking<Tried>(std::move(lane), deadline, std::move(open));
     if (!opened) {
         co_return explain_hang(path);
     }

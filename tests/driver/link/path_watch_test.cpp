@@ -140,13 +140,17 @@ TEST_F(PathWatchTest, TellsThatAPseudoTerminalWentAndAnotherGotItsNumber) {
 }
 
 TEST_F(PathWatchTest, LooksNowAndThenWhereTheSystemRefusesToTell) {
-    const PathWatch first(context_.get_executor(), "/", [] {});  // the context has its own by now
+    path_ = (scratch_.root() / "port").string();
+    const auto executor = context_.get_executor();
+    const auto on_change = [this] { ++changes_; };
+    const PathWatch first(executor, "/", [] {});  // the context has its own descriptors by now
     {
         const NoMoreDescriptors limit;
-        watch((scratch_.root() / "port").string());
+        watch_ = std::make_unique<PathWatch>(executor, path_, on_change);
     }
     scratch_.file("port", "");
     EXPECT_TRUE(told());
+    EXPECT_TRUE(there());
 }
 
 TEST_F(PathWatchTest, MayBeDestroyedByWhatItTells) {
