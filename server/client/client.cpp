@@ -265,7 +265,7 @@ Result<Event, Problem> Client::Impl::lost(Problem why) {
         failures = most_failures;
     }
     const double luck = std::uniform_real_distribution<double>(0, 1)(random);
-    const auto retry_in = wait_after(failures, options.backoff, luck);
+    const auto retry_in = async::wait_after(failures, options.backoff, luck);
     next_try = Clock::now() + retry_in;
     return Event(Disconnected{std::move(why), retry_in});
 }

@@ -2,8 +2,8 @@
 // (BlockingClient is for those that do not.)
 #pragma once
 
+#include "driver/async/backoff.hpp"
 #include "driver/protocol/result.hpp"
-#include "server/client/backoff.hpp"
 #include "server/client/event.hpp"
 #include "server/client/stream_url.hpp"
 #include "sweepcast/v1/stream.pb.h"
@@ -30,7 +30,7 @@ struct ClientOptions {
     /// states only.
     std::optional<v1::Subscribe> wish{v1::Subscribe{}};
     Reconnect reconnect{Reconnect::always};
-    Backoff backoff{};
+    async::Backoff backoff{};
     /// For a connection and the gateway's greeting.
     std::chrono::milliseconds connect_limit{5000};
 };

@@ -1,8 +1,8 @@
-#include "server/client/backoff.hpp"
+#include "driver/async/backoff.hpp"
 
 #include <algorithm>
 
-namespace sweepcast::client {
+namespace sweepcast::async {
 
 std::chrono::milliseconds wait_after(std::uint32_t failures, const Backoff& backoff, double luck) {
     constexpr std::uint32_t most_doublings = 20;  // a quarter of a second becomes three days
@@ -20,4 +20,4 @@ std::chrono::milliseconds wait_after(std::uint32_t failures, const Backoff& back
     ));
 }
 
-}  // namespace sweepcast::client
+}  // namespace sweepcast::async

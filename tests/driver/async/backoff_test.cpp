@@ -1,5 +1,5 @@
 // How long to wait before the next attempt to connect.
-#include "server/client/backoff.hpp"
+#include "driver/async/backoff.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 using namespace std::chrono_literals;
 
-namespace sweepcast::client {
+namespace sweepcast::async {
 namespace {
 
 constexpr Backoff schedule{100ms, 1000ms};
@@ -33,4 +33,4 @@ TEST(BackoffTest, NeverWaitsForNothingAtAll) {
 }
 
 }  // namespace
-}  // namespace sweepcast::client
+}  // namespace sweepcast::async
