@@ -41,6 +41,29 @@ Problem advice(error_code code) {
     return {code, code.message(), std::string(next_step_after(code))};
 }
 
+Problem protection_problem(std::uint16_t code) {
+    auto problem = advice(errc::protection_stop);
+    problem.cause += fmt::format(", error code {} (0x{:04X})", code, code);
+    return problem;
+}
+
+Problem reset_in_vain(std::size_t resets, std::uint16_t code) {
+    auto problem = protection_problem(code);
+    problem.cause += fmt::format(", and {} resets have not helped", resets);
+    problem.hint =
+        "see that nothing blocks its motor and that its 5 V supply is good, then reset it; if that "
+        "does not help, unplug it for ten seconds; if it comes back then, the lidar is broken";
+    return problem;
+}
+
+Problem unwatched() {
+    return {{}, "nobody watches, so its motor is off", "it scans for the first who subscribes"};
+}
+
+bool is_absence(const error_code& code) {
+    return code == link::errc::port_not_found;
+}
+
 Problem not_ready(Phase phase) {
     return {
         make_error_code(errc::not_ready),

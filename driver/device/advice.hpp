@@ -6,6 +6,8 @@
 #include "driver/device/scan_mode.hpp"
 #include "driver/protocol/result.hpp"
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -14,6 +16,19 @@ namespace sweepcast::device {
 
 /// The cause in words and the next step, for any error of the device and of its link.
 [[nodiscard]] Problem advice(error_code code);
+
+/// The lidar says that it is in protection stop, for the reason that its maker gave that code.
+[[nodiscard]] Problem protection_problem(std::uint16_t code);
+
+/// It is in protection stop still, though it was reset so many times.
+[[nodiscard]] Problem reset_in_vain(std::size_t resets, std::uint16_t code);
+
+/// It would scan if anybody watched.
+[[nodiscard]] Problem unwatched();
+
+/// Whether the code says that the port itself is not there, so that its coming is worth waiting
+/// for.
+[[nodiscard]] bool is_absence(const error_code& code);
 
 /// A command has not taken effect in time: the lidar is still in this phase.
 [[nodiscard]] Problem not_ready(Phase phase);

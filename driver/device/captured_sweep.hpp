@@ -30,6 +30,9 @@ struct CapturedSweep {
     /// By how much the wall clock was set forward (negative: back) since the sweep before, so that
     /// UNIX times of the two do not go together; 0: it was not, or only let run faster or slower.
     std::chrono::nanoseconds clock_step{};
+    /// For how long the lidar was not seen before this sweep, where it does not follow on from the
+    /// one before: the scan was interrupted or ended meanwhile. 0: it follows on, or is the first.
+    std::chrono::nanoseconds gap{};
 };
 
 }  // namespace sweepcast::device

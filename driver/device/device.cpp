@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <random>
 #include <utility>
 
 namespace sweepcast::device {
@@ -54,21 +55,21 @@ asio::awaitable<T> guarded(asio::awaitable<T> part) {
 
 Device::Device(
     asio::any_io_executor executor,
-    OpenLink open_link,
+    Port port,
     DeviceOptions options,
     DeviceObserver& observer,
     std::shared_ptr<spdlog::logger> log
 )
-    : open_link_(std::move(open_link))
+    : port_(std::move(port))
     , options_(std::move(options))
     , observer_(observer)
     , log_(std::move(log))
+    , supervisor_(state_, options_.recovery, std::random_device{}())
     , commanded_(executor)
     , changed_(executor) {
     wanted_.scanning = options_.scan_at_once;
     wanted_.mode = options_.mode;
     wanted_.speed_hz = options_.speed_hz;
-    state_.since = std::chrono::system_clock::now();
 }
 
 asio::awaitable<void> Device::run() {
@@ -80,14 +81,34 @@ asio::awaitable<void> Device::run() {
         auto life = live();
         const auto problem = co_await guarded(std::move(life));
         wanted_.reset = false;  // the next attempt begins from scratch anyway
-        if (wanted_.shutdown || examination_) {
-            continue;
+        if (!wanted_.shutdown && !examination_) {
+            co_await await_attempt(problem);
         }
-        tell_failure(problem);
-        set_phase(Phase::failed, problem);
-        co_await commanded_.wait_until(Clock::now() + options_.retry_delay);
     }
-    set_phase(Phase::disconnected);
+    happened(Event::shutdown);
+}
+
+/// After a failure: waits until the lidar is worth another attempt.
+asio::awaitable<void> Device::await_attempt(const Problem& problem) {
+    if (is_absence(problem.code)) {
+        tell_failure(problem, "waiting for it");
+        happened(Event::no_port, problem);
+        co_await pause_until(Clock::now() + options_.look_interval);
+        co_return;
+    }
+    tell_failure(problem, "trying again");
+    happened(Event::lost, problem);
+    co_await pause_until(supervisor_.next_attempt());
+}
+
+/// Until then, or until a command comes or the port changes.
+asio::awaitable<void> Device::pause_until(Clock::time_point then) {
+    using namespace asio::experimental::awaitable_operators;
+    if (port_.wait_for_change) {
+        co_await (commanded_.wait_until(then) || port_.wait_for_change(then));
+    } else {
+        co_await commanded_.wait_until(then);
+    }
 }
 
 void Device::shut_down() {
@@ -99,7 +120,7 @@ void Device::shut_down() {
 /// Lets an examination have the port.
 asio::awaitable<void> Device::examine() {
     using namespace asio::experimental::awaitable_operators;
-    set_phase(Phase::identifying, {{}, "being examined", ""});
+    happened(Event::examine, {{}, "being examined", ""});
     auto first = co_await (examination_result() || until_shutdown());
     if (auto* diagnosis = std::get_if<0>(&first)) {
         examination_->result = std::move(*diagnosis);
@@ -124,11 +145,12 @@ asio::awaitable<std::optional<Diagnosis>> Device::examination_result() {
 
 /// One connection, from opening the port to losing it. Returns what ended it.
 asio::awaitable<Problem> Device::live() {
-    set_phase(Phase::identifying);
+    happened(Event::attempt);
     auto opened = co_await open();
     if (!opened) {
         co_return opened.error();
     }
+    happened(Event::opened);
     const auto link = std::move(*opened);
     const Lend lend(link_, *link);
     Conversation talk(*link);
@@ -145,7 +167,7 @@ asio::awaitable<Problem> Device::live() {
 /// Opens the link; given up at shutdown, as a connection over a network takes its time.
 asio::awaitable<Result<std::unique_ptr<link::Link>, Problem>> Device::open() {
     using namespace asio::experimental::awaitable_operators;
-    auto opening = open_link_(bauds().front());
+    auto opening = port_.open(bauds().front());
     auto first = co_await (guarded(std::move(opening)) || until_shutdown());
     if (auto* opened = std::get_if<0>(&first)) {
         co_return std::move(*opened);
@@ -168,7 +190,8 @@ asio::awaitable<Problem> Device::hold(Conversation& talk) {
     if (!met) {
         co_return advice(met.error());
     }
-    while (!wanted_.shutdown) {
+    const auto examined_now = [this] { return examination_ && state_.phase == Phase::stalled; };
+    while (!wanted_.shutdown && !examined_now()) {
         const auto step = co_await next_step(talk);
         if (!step && step.error() != link::errc::interrupted) {
             co_return advice(step.error());
@@ -195,7 +218,7 @@ asio::awaitable<Result<void>> Device::meet(Conversation& talk) {
 asio::awaitable<Result<void>> Device::find(Conversation& talk) {
     const auto candidates = bauds();
     log_->debug("looking for it at {} baud", fmt::join(candidates, ", "));
-    const auto found = co_await find_baud(talk, candidates);
+    const auto found = co_await find_baud(talk, candidates, state_.info.has_value());
     if (!found) {
         co_return found.error();
     }
@@ -231,36 +254,40 @@ std::vector<std::uint32_t> Device::bauds() const {
 
 asio::awaitable<Result<void>> Device::next_step(Conversation& talk) {
     if (wanted_.reset) {
-        co_return co_await reboot(talk);
+        supervisor_.refill_resets();
+        const Problem told{{}, "told to", ""};
+        const auto rebooted = co_await reboot(talk, told);
+        wanted_.reset = wanted_.reset && !rebooted;
+        co_return rebooted;
     }
     if (state_.health && state_.health->status == protocol::HealthStatus::error) {
-        co_return co_await idle(talk, Phase::protection_stop);
+        co_return co_await leave_protection(talk);
     }
-    if (wanted_.scanning) {
+    if (wanted_.to_scan()) {
         co_return co_await scan(talk);
     }
-    co_return co_await idle(talk, Phase::idle);
+    co_return co_await rest(talk);
 }
 
-/// Motor off; waits for a command. Asks now and then whether the lidar is still there and well: an
-/// idle one says nothing by itself when its cable is pulled or its protection stop ends.
-asio::awaitable<Result<void>> Device::idle(Conversation& talk, Phase phase) {
+/// Motor off; waits for a command.
+asio::awaitable<Result<void>> Device::rest(Conversation& talk) {
     const auto off = co_await stop_motor(talk, motor_.control);
     if (!off) {
         co_return off;
     }
+    happened(Event::rest, wanted_.scanning ? unwatched() : mode_problem());
+    co_return co_await watch_health(talk);
+}
+
+/// Waits until the lidar's health changes. Asks now and then whether it is still there and well:
+/// one that does not scan says nothing by itself when its cable is pulled or its protection stop
+/// ends.
+asio::awaitable<Result<void>> Device::watch_health(Conversation& talk) {
     const auto known = state_.health;
-    set_phase(
-        phase,
-        phase == Phase::protection_stop ? advice(errc::protection_stop) : mode_problem()
-    );
     while (state_.health == known) {
-        const auto ask_at = Clock::now() + options_.health_interval;
-        while (Clock::now() < ask_at) {
-            const auto heard = co_await talk.read(ask_at);  // leftovers of a scan or of a boot
-            if (!heard && heard.error() != link::errc::timed_out) {
-                co_return heard.error();
-            }
+        const auto listened = co_await listen_until(talk, Clock::now() + options_.health_interval);
+        if (!listened) {
+            co_return listened;
         }
         const auto health = co_await ask_health(talk);
         if (!health) {
@@ -271,104 +298,46 @@ asio::awaitable<Result<void>> Device::idle(Conversation& talk, Phase phase) {
     co_return Result<void>{};
 }
 
-asio::awaitable<Result<void>> Device::scan(Conversation& talk) {
-    const auto* mode = wanted_mode();
-    if (mode == nullptr) {
-        mode = best_mode(state_.modes);
-    }
-    if (mode == nullptr) {
-        co_return make_error_code(errc::unknown_mode);
-    }
-    mode_ = *mode;
-    state_.mode = mode_.name;
-    regulator_.want(wanted_.speed_hz);
-    state_.rotation = regulator_.rotation();
-    set_phase(Phase::starting);
-    begun_before_scan_ = begun_;
-    Scan scan(talk, mode_, motor_.control, regulator_, state_.line, *this);
-    const auto ended = co_await scan.run();
-    regulator_.stopped();
-    state_.rotation = regulator_.rotation();
-    if (ended.error() == link::errc::disconnected) {
-        co_return ended;
-    }
-    set_phase(Phase::stopping);
-    const auto silent = co_await talk.silence();
-    if (!silent && silent.error() != link::errc::interrupted) {
-        co_return silent;
-    }
-    co_return ended;
-}
-
-void Device::on_first_samples() {
-    set_phase(Phase::scanning, mode_problem());
-}
-
-void Device::on_revolution(protocol::Sweep sweep, protocol::AnswerType type) {
-    report_scan();
-    begin_sweep(sweep.begun);
-    CapturedSweep captured;
-    captured.sweep = std::move(sweep);
-    captured.sweep.begun = begun_;
-    captured.mode = mode_.name;
-    captured.answer_type = type;
-    captured.sample_duration = std::chrono::round<std::chrono::microseconds>(mode_.sample_duration);
-    captured.monotonic_to_unix = monotonic_to_unix_;
-    captured.clock_step = std::exchange(clock_step_, {});
-    captured.sequence = ++sequence_;
-    observer_.on_sweep(std::move(captured));
-}
-
-void Device::on_progress(
-    const protocol::UnfinishedSweep& sweep,
-    protocol::AnswerType type,
-    protocol::SampleTime arrival
-) {
-    begin_sweep(sweep.begun);
-    SweepProgress progress;
-    progress.sweep = sweep;
-    progress.sweep.begun = begun_;
-    progress.sequence = sequence_ + 1;
-    progress.mode = mode_.name;
-    progress.answer_type = type;
-    progress.sample_duration = std::chrono::round<std::chrono::microseconds>(mode_.sample_duration);
-    progress.monotonic_to_unix = monotonic_to_unix_;
-    progress.clock_step = clock_step_;
-    progress.arrival = arrival;
-    observer_.on_progress(progress);
-}
-
-/// Notes which sweep of the scan is under way; reads the clocks once for each.
-void Device::begin_sweep(std::uint64_t begun) {
-    begun += begun_before_scan_;
-    if (begun == begun_) {
-        return;
-    }
-    begun_ = begun;
-    const auto relation = wall_clock_.take(read_clocks());
-    monotonic_to_unix_ = relation.monotonic_to_unix;
-    clock_step_ += relation.step;  // a sweep that is given up leaves it to the next one
-}
-
-/// Tells the speed and the state of the line: at once when the speed is reached or lost, else now
-/// and then.
-void Device::report_scan() {
-    const bool was_settled = std::exchange(state_.rotation, regulator_.rotation()).settled;
-    if (state_.rotation.warning != told_warning_) {
-        told_warning_ = state_.rotation.warning;
-        if (!told_warning_.empty()) {
-            log_->warn("{}", told_warning_);
+/// Reads what the lidar says unasked, such as leftovers of a scan or of a boot.
+asio::awaitable<Result<void>> Device::listen_until(Conversation& talk, Clock::time_point then) {
+    while (Clock::now() < then) {
+        const auto heard = co_await talk.read(then);
+        if (!heard && heard.error() != link::errc::timed_out) {
+            co_return heard.error();
         }
-    } else if (state_.rotation.settled == was_settled && Clock::now() - told_at_ < options_.report_interval) {
-        return;
     }
-    tell_state();
+    co_return Result<void>{};
+}
+
+/// A lidar in protection stop is reset so that it goes on, as long as it may be; if in vain, or if
+/// no scan is wanted, it is left alone until its user sees to it or it is well again.
+asio::awaitable<Result<void>> Device::leave_protection(Conversation& talk) {
+    const auto off = co_await stop_motor(talk, motor_.control);
+    if (!off) {
+        co_return off;
+    }
+    const auto problem = protection_problem(state_.health->code);
+    happened(Event::protect, problem);
+    if (!wanted_.to_scan()) {
+        co_return co_await watch_health(talk);
+    }
+    if (!supervisor_.take_reset(Moment::now())) {
+        const auto advice = reset_in_vain(supervisor_.resets_taken(), state_.health->code);
+        tell_failure(advice, "no more resets by itself");
+        happened(Event::give_up, advice);
+        co_return co_await watch_health(talk);
+    }
+    tell_failure(problem, "resetting it");
+    const auto waited = co_await listen_until(talk, Clock::now() + supervisor_.reset_wait());
+    if (!waited) {
+        co_return waited;
+    }
+    co_return co_await reboot(talk, problem);
 }
 
 /// RESET, then asks until the lidar has booted (protocol.md 11.2: poll, do not sleep blindly).
-asio::awaitable<Result<void>> Device::reboot(Conversation& talk) {
-    log_->info("resetting the lidar");
-    set_phase(Phase::identifying, {{}, "resetting", ""});
+asio::awaitable<Result<void>> Device::reboot(Conversation& talk, const Problem& why) {
+    happened(Event::reset, why);
     const protocol::Request reset{protocol::Command::reset, {}};
     if (auto sent = co_await talk.send(reset); !sent) {
         co_return sent;
@@ -377,7 +346,6 @@ asio::awaitable<Result<void>> Device::reboot(Conversation& talk) {
     for (;;) {
         auto identity = co_await identify(talk);
         if (identity) {
-            wanted_.reset = false;
             adopt(std::move(*identity));
             co_return Result<void>{};
         }
@@ -428,28 +396,27 @@ Problem Device::mode_problem() const {
     return problem;
 }
 
-void Device::set_phase(Phase phase, const Problem& why) {
-    if (phase == Phase::scanning || phase == Phase::idle) {
+/// Takes what happened to the lidar, and tells of it.
+void Device::happened(Event event, const Problem& why) {
+    const auto before = state_.phase;
+    const auto failing_since = state_.failing_since;
+    const bool changed = supervisor_.on(event, why, Moment::now());
+    if (failing_since && !state_.failing_since && event != Event::shutdown) {
+        const auto took = std::chrono::duration<double>(state_.since - *failing_since).count();
+        log_->info("{} again, after {:.1f} s", name(state_.phase), took);
         told_failure_.clear();
-    }
-    if (state_.phase != phase) {
+    } else if (state_.phase != before) {
         // Attempts that fail again as they did before are no news.
-        log_->log(
-            told_failure_.empty() ? spdlog::level::info : spdlog::level::debug,
-            "{}",
-            name(phase)
-        );
+        const auto level = told_failure_.empty() ? spdlog::level::info : spdlog::level::debug;
+        log_->log(level, "{}", name(state_.phase));
     }
-    state_.phase = phase;
-    state_.cause = why.cause;
-    state_.hint = why.hint;
-    state_.since = std::chrono::system_clock::now();
-    ++state_version_;
     if (in_hand() && examination_) {  // asked for while it was being reset, or had just answered
         examination_->came_into_hand = true;
         examination_.reset();
     }
-    tell_state();
+    if (changed || state_.phase != Phase::absent) {  // looked for in vain once more is no news
+        tell_state();
+    }
 }
 
 void Device::tell_state() {
@@ -458,19 +425,15 @@ void Device::tell_state() {
     changed_.notify();
 }
 
-/// Warns of a failure, once for as long as the next attempts fail for the same reason.
-void Device::tell_failure(const Problem& problem) {
+/// Warns of a failure and of what is done next, once for as long as the next attempts fail for the
+/// same reason.
+void Device::tell_failure(const Problem& problem, std::string_view next) {
     if (problem.cause == told_failure_) {
         return;
     }
     told_failure_ = problem.cause;
-    log_->warn(
-        "{}{}{}; trying again every {} ms",
-        problem.cause,
-        problem.hint.empty() ? "" : ": ",
-        problem.hint,
-        options_.retry_delay.count()
-    );
+    const auto* const colon = problem.hint.empty() ? "" : ": ";
+    log_->warn("{}{}{}; {}", problem.cause, colon, problem.hint, next);
 }
 
 /// Makes run() look at what is wanted.
@@ -487,7 +450,7 @@ const ScanMode* Device::wanted_mode() const {
 
 /// In the phase that is wanted, with nothing left to do.
 bool Device::settled() const {
-    return state_.phase == (wanted_.scanning ? Phase::scanning : Phase::idle);
+    return state_.phase == (wanted_.to_scan() ? Phase::scanning : Phase::idle);
 }
 
 }  // namespace sweepcast::device

@@ -1,5 +1,5 @@
-// Device: one lidar's life. Opens its port, identifies it, scans and stops as wanted, and starts
-// again when something breaks.
+// Device: one lidar's life. Opens its port, identifies it, scans and stops as wanted, and brings it
+// back when something breaks (STATES.md).
 #pragma once
 
 #include "driver/async/notifier.hpp"
@@ -8,10 +8,12 @@
 #include "driver/device/device_state.hpp"
 #include "driver/device/diagnosis.hpp"
 #include "driver/device/identify.hpp"
+#include "driver/device/line_watch.hpp"
 #include "driver/device/scan.hpp"
+#include "driver/device/scan_stamps.hpp"
 #include "driver/device/speed_regulator.hpp"
+#include "driver/device/supervisor.hpp"
 #include "driver/device/sweep_progress.hpp"
-#include "driver/device/wall_clock.hpp"
 #include "driver/link/link.hpp"
 #include "driver/protocol/result.hpp"
 
@@ -25,6 +27,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace sweepcast::device {
@@ -45,6 +48,15 @@ public:
 using OpenLink = std::function<
     boost::asio::awaitable<Result<std::unique_ptr<link::Link>, Problem>>(std::uint32_t baud)>;
 
+/// The way to a lidar.
+struct Port {
+    OpenLink open;
+    /// Returns when the port may have come or changed since it could not be had, at the latest
+    /// then. Empty: nobody can tell, so that only time passes.
+    std::function<boost::asio::awaitable<void>(std::chrono::steady_clock::time_point)>
+        wait_for_change{};
+};
+
 /// Examines the lidar and its port from outside.
 using Examine = std::function<boost::asio::awaitable<Diagnosis>()>;
 
@@ -59,8 +71,9 @@ struct DeviceOptions {
     std::optional<std::uint32_t> baud{};
     /// Line speeds at which to look for it first.
     std::vector<std::uint32_t> baud_hints{};
-    /// How long to wait after a failure before the next attempt.
-    std::chrono::milliseconds retry_delay{2000};
+    RecoveryPolicy recovery{};
+    /// How often to look for a port that is not there, if nobody tells that it has come.
+    std::chrono::milliseconds look_interval{500};
     /// How often to ask a lidar that does not scan whether it is there and well.
     std::chrono::milliseconds health_interval{2000};
     /// How often to tell the measured speed and the state of the line while scanning.
@@ -72,7 +85,7 @@ class Device : private ScanObserver {
 public:
     Device(
         boost::asio::any_io_executor executor,
-        OpenLink open_link,
+        Port port,
         DeviceOptions options,
         DeviceObserver& observer,
         std::shared_ptr<spdlog::logger> log
@@ -106,13 +119,18 @@ public:
     /// when the speed is reached. Errors: errc::no_such_speed, fixed_speed.
     Result<void, Problem> set_speed(double hz);
 
+    /// Whether somebody wants what it sees. While nobody does a scan that is wanted rests, motor
+    /// off; at first somebody does.
+    void set_demand(bool demand);
+
     /// Has `examine` look at a lidar that is not in hand, while the device keeps away from the
     /// port; who asks meanwhile gets the same answer. Nothing if the lidar is in hand, or comes
     /// into hand before the examination has begun: its state tells all there is to tell. A scan
     /// that is just starting or stopping is awaited. Errors: errc::shutting_down, internal.
     boost::asio::awaitable<Result<std::optional<Diagnosis>, Problem>> diagnose(Examine examine);
 
-    /// Whether the lidar has been identified on the connection that is open.
+    /// Whether the lidar has been identified on the connection that is open, and does as it is
+    /// told.
     [[nodiscard]] bool in_hand() const;
 
     [[nodiscard]] const DeviceState& state() const { return state_; }
@@ -123,9 +141,12 @@ private:
         bool scanning{};
         std::string mode{};
         double speed_hz{};
+        bool in_demand{true};
         bool reset{};
         bool shutdown{};
         std::uint64_t command{};
+
+        [[nodiscard]] bool to_scan() const { return scanning && in_demand; }
     };
 
     /// An examination that was asked for.
@@ -138,14 +159,21 @@ private:
     boost::asio::awaitable<void> examine();
     boost::asio::awaitable<std::optional<Diagnosis>> examination_result();
     boost::asio::awaitable<Problem> live();
+    boost::asio::awaitable<void> await_attempt(const Problem& problem);
+    boost::asio::awaitable<void> pause_until(std::chrono::steady_clock::time_point then);
     boost::asio::awaitable<Result<std::unique_ptr<link::Link>, Problem>> open();
     boost::asio::awaitable<Problem> hold(Conversation& talk);
     boost::asio::awaitable<Result<void>> meet(Conversation& talk);
     boost::asio::awaitable<Result<void>> find(Conversation& talk);
     boost::asio::awaitable<Result<void>> next_step(Conversation& talk);
-    boost::asio::awaitable<Result<void>> idle(Conversation& talk, Phase phase);
+    boost::asio::awaitable<Result<void>> rest(Conversation& talk);
+    boost::asio::awaitable<Result<void>> watch_health(Conversation& talk);
+    boost::asio::awaitable<Result<void>> leave_protection(Conversation& talk);
     boost::asio::awaitable<Result<void>> scan(Conversation& talk);
-    boost::asio::awaitable<Result<void>> reboot(Conversation& talk);
+    boost::asio::awaitable<Result<void>> restart_stalled(Conversation& talk, error_code why);
+    boost::asio::awaitable<Result<void>> reboot(Conversation& talk, const Problem& why);
+    boost::asio::awaitable<Result<void>>
+    listen_until(Conversation& talk, std::chrono::steady_clock::time_point then);
     boost::asio::awaitable<void> until_shutdown();
     boost::asio::awaitable<Result<void, Problem>>
     settle(std::function<bool()> reached, std::chrono::milliseconds limit);
@@ -158,39 +186,36 @@ private:
         protocol::SampleTime arrival
     ) override;
 
-    void begin_sweep(std::uint64_t begun);
     void adopt(Identity identity);
     [[nodiscard]] std::vector<std::uint32_t> bauds() const;
     void report_scan();
-    void set_phase(Phase phase, const Problem& why = {});
+    bool tell_warning(std::string& told, const std::string& warning);
+    void happened(Event event, const Problem& why = {});
     void tell_state();
-    void tell_failure(const Problem& problem);
+    void tell_failure(const Problem& problem, std::string_view next);
     void poke();
     [[nodiscard]] const ScanMode* wanted_mode() const;
     [[nodiscard]] Problem mode_problem() const;
     [[nodiscard]] bool settled() const;
 
-    OpenLink open_link_;
+    Port port_;
     DeviceOptions options_;
     DeviceObserver& observer_;
     std::shared_ptr<spdlog::logger> log_;
 
     Wanted wanted_;
     DeviceState state_;
-    std::uint64_t state_version_{};
+    Supervisor supervisor_;
     std::chrono::steady_clock::time_point told_at_{};
     MotorTraits motor_;
     SpeedRegulator regulator_{motor_};
-    ScanMode mode_;  ///< of the running scan
-    std::uint64_t sequence_{};
-    std::uint64_t begun_{};              ///< sweeps, in all scans
-    std::uint64_t begun_before_scan_{};  ///< in those before the running one
-    WallClock wall_clock_;
-    std::chrono::nanoseconds monotonic_to_unix_{};  ///< of the sweep under way
-    std::chrono::nanoseconds clock_step_{};         ///< since the one told last
+    ScanStamps stamps_;
+    LineWatch line_watch_;
+    std::uint32_t restarts_{};  ///< of stalled scans since a turn was last complete
     std::string told_failure_;  ///< the cause that the log was last told; empty once all is well
     std::string told_warning_;  ///< of the rotation
-    link::Link* link_{};        ///< the open one, while there is one
+    std::string told_line_warning_;
+    link::Link* link_{};                        ///< the open one, while there is one
     std::shared_ptr<Examination> examination_;  ///< wanted or under way
     async::Notifier commanded_;
     async::Notifier changed_;

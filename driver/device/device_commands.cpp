@@ -18,6 +18,11 @@ constexpr auto stop_limit = 3s;
 /// Booting takes up to 15 s.
 constexpr auto reset_limit = 15s + start_limit;
 
+/// Whether no command can have an effect there, until something changes by itself.
+bool is_out_of_reach(Phase phase) {
+    return phase == Phase::absent || phase == Phase::backing_off || phase == Phase::failed;
+}
+
 }  // namespace
 
 asio::awaitable<Result<void, Problem>> Device::start(std::string mode) {
@@ -35,6 +40,9 @@ asio::awaitable<Result<void, Problem>> Device::start(std::string mode) {
     const auto lacks_mode = [this] { return !state_.modes.empty() && wanted_mode() == nullptr; };
     const auto settled = co_await settle(
         [this, names_mode, lacks_mode] {
+            if (!wanted_.in_demand) {
+                return this->settled();
+            }
             if (lacks_mode()) {
                 return names_mode || state_.phase == Phase::scanning;
             }
@@ -85,14 +93,20 @@ Result<void, Problem> Device::set_speed(double hz) {
     return {};
 }
 
+void Device::set_demand(bool demand) {
+    if (std::exchange(wanted_.in_demand, demand) != demand && wanted_.scanning) {
+        poke();
+    }
+}
+
 asio::awaitable<Result<void, Problem>> Device::stop() {
     if (std::exchange(wanted_.scanning, false)) {
         ++wanted_.command;
     }
     co_return co_await settle(
         [this] {
-            return state_.phase == Phase::idle || state_.phase == Phase::failed ||
-                   state_.phase == Phase::protection_stop || state_.phase == Phase::disconnected;
+            return state_.phase == Phase::idle || state_.phase == Phase::protection_stop ||
+                   state_.phase == Phase::disconnected || is_out_of_reach(state_.phase);
         },
         stop_limit
     );
@@ -134,15 +148,31 @@ asio::awaitable<Result<std::optional<Diagnosis>, Problem>> Device::diagnose(Exam
 }
 
 bool Device::in_hand() const {
-    return link_ != nullptr && state_.phase != Phase::identifying &&
-           state_.phase != Phase::failed && state_.phase != Phase::disconnected;
+    switch (state_.phase) {
+    case Phase::idle:
+    case Phase::starting:
+    case Phase::scanning:
+    case Phase::stopping:
+    case Phase::protection_stop:
+    case Phase::failed:
+        return link_ != nullptr;
+    case Phase::disconnected:
+    case Phase::absent:
+    case Phase::opening:
+    case Phase::identifying:
+    case Phase::stalled:
+    case Phase::resetting:
+    case Phase::backing_off:
+        break;
+    }
+    return false;
 }
 
 /// Waits until a command has taken effect, or cannot any more.
 asio::awaitable<Result<void, Problem>>
 Device::settle(std::function<bool()> reached, std::chrono::milliseconds limit) {
     const auto command = wanted_.command;
-    const auto version = state_version_;
+    const auto version = state_.changes;
     const auto deadline = Clock::now() + limit;
     if (!reached()) {
         poke();
@@ -154,8 +184,10 @@ Device::settle(std::function<bool()> reached, std::chrono::milliseconds limit) {
         if (wanted_.command != command) {
             co_return advice(errc::superseded);
         }
-        const bool failed = state_.phase == Phase::failed || state_.phase == Phase::protection_stop;
-        if (failed && state_version_ != version) {
+        const bool stopped_for_good =
+            state_.phase == Phase::protection_stop && !wanted_.to_scan() && !wanted_.reset;
+        const bool failed = is_out_of_reach(state_.phase) || stopped_for_good;
+        if (failed && (state_.changes != version || state_.phase == Phase::absent)) {
             co_return Problem{make_error_code(errc::not_ready), state_.cause, state_.hint};
         }
         const bool changed = co_await changed_.wait_until(deadline);

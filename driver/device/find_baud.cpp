@@ -19,8 +19,10 @@ using Clock = std::chrono::steady_clock;
 
 namespace {
 
-/// At a wrong speed no answer is the rule: one attempt.
-constexpr Patience patience_at_a_speed{500ms, 1};
+/// At a wrong speed no answer is the rule; the second attempt is for a lidar that was still deaf.
+constexpr Patience patience_at_a_speed{250ms, 2};
+/// Where it was met before: it may be booting, and answers as soon as it can.
+constexpr Patience patience_where_met{250ms, 6};
 /// Blocks of the measuring byte are sent for so long at most (protocol.md 4.7).
 constexpr auto measuring_limit = 1500ms;
 constexpr auto measured_limit = 500ms;
@@ -83,7 +85,8 @@ std::vector<std::uint32_t> bauds_to_try(std::span<const std::uint32_t> hints) {
     return bauds;
 }
 
-asio::awaitable<Result<Found>> find_baud(Conversation& talk, std::span<const std::uint32_t> bauds) {
+asio::awaitable<Result<Found>>
+find_baud(Conversation& talk, std::span<const std::uint32_t> bauds, bool met_before) {
     if (talk.link().is_network()) {
         const auto info = co_await ask_info(talk, patience_at_a_speed);
         if (!info) {
@@ -100,7 +103,8 @@ asio::awaitable<Result<Found>> find_baud(Conversation& talk, std::span<const std
         if (!set) {
             co_return set.error();
         }
-        const auto info = co_await ask_info(talk, patience_at_a_speed);
+        const bool here = met_before && baud == bauds.front();
+        const auto info = co_await ask_info(talk, here ? patience_where_met : patience_at_a_speed);
         if (info) {
             co_return Found{baud, *info};
         }

@@ -28,10 +28,11 @@ struct Found {
 
 /// Ends a scan that may be running and asks who is there at each speed in turn; the line stays at
 /// the one at which a lidar answered. Speeds that the adapter cannot run at are passed over. On a
-/// network there is one try, without a speed. Takes at most 0.7 s a speed. Errors: errc::no_answer;
-/// those of the link, baud_not_supported only if the adapter can run at none of the speeds.
+/// network there is no speed to try. Takes at most 0.7 s a speed, at the first one 1.7 s if the
+/// lidar was met there before: it may be booting. Errors: errc::no_answer; those of the link,
+/// baud_not_supported only if the adapter can run at none of the speeds.
 boost::asio::awaitable<Result<Found>>
-find_baud(Conversation& talk, std::span<const std::uint32_t> bauds);
+find_baud(Conversation& talk, std::span<const std::uint32_t> bauds, bool met_before = false);
 
 /// Makes a lidar that answers at the present speed of the line speak at `baud`, and the line with
 /// it; it keeps to that until it loses its power. Source: protocol.md 4.7.

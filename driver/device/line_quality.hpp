@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace sweepcast::device {
 
@@ -12,6 +13,8 @@ struct LineQuality {
     std::uint64_t checksum_errors{};
     std::uint64_t skipped_bytes{};
     std::uint64_t lost_packets{};
+    /// What is wrong with it of late and what to do about it, if it is degraded.
+    std::string warning{};
     bool operator==(const LineQuality&) const = default;
 };
 

@@ -4,7 +4,9 @@
 #include "driver/device/motor.hpp"
 #include "driver/device/scan_reader.hpp"
 #include "driver/link/error.hpp"
+#include "driver/protocol/answer_type.hpp"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -19,10 +21,26 @@ namespace {
 constexpr auto descriptor_limit = 2000ms;
 /// The device holds samples back until its speed is stable, one to two seconds (protocol.md 13.17).
 constexpr auto spin_up_limit = 6s;
-/// Samples come every few milliseconds once they do.
-constexpr auto silence_limit = 1000ms;
-/// The slowest lidars turn twice a second.
+/// A line that says nothing for so long, and for three packets, is silent. A network may hold its
+/// breath for longer.
+constexpr auto shortest_silence = 300ms;
+constexpr auto network_silence = 1000ms;
+constexpr int packets_of_silence = 3;
+/// The slowest lidars turn twice a second; one whose speed is known misses so many turns.
 constexpr auto turn_limit = 3s;
+constexpr auto shortest_turn_limit = 1s;
+constexpr int turns_missed = 5;
+
+/// Whether a motor told this after that needs time, during which a lidar may hold samples back.
+bool is_another_speed(std::uint16_t before, std::uint16_t now) {
+    const auto change = std::max(before, now) - std::min(before, now);
+    return before == 0 || change * 10 > before;
+}
+
+/// How long to wait for the next complete turn after one that took `period`.
+Clock::duration next_turn_limit(std::chrono::nanoseconds period) {
+    return std::clamp<Clock::duration>(turns_missed * period, shortest_turn_limit, turn_limit);
+}
 
 }  // namespace
 
@@ -47,10 +65,21 @@ asio::awaitable<Result<void>> Scan::run() {
 
 /// Tells the motor what the regulator has it do.
 asio::awaitable<Result<void>> Scan::obey_regulator() {
-    told_ = regulator_.setting();
-    samples_due_ = Clock::now() + spin_up_limit;
-    turn_due_ = samples_due_ + turn_limit;
+    const auto before = std::exchange(told_, regulator_.setting());
+    if (is_another_speed(before, told_)) {
+        samples_due_ = Clock::now() + spin_up_limit;
+        turn_due_ = samples_due_ + turn_limit;
+    }
     co_return co_await run_motor(talk_, control_, told_);
+}
+
+/// How long no samples may come, once they have begun to.
+Clock::duration Scan::silence_after(protocol::AnswerType type) const {
+    const auto samples = static_cast<int>(protocol::samples_per_packet(type));
+    return std::max<Clock::duration>(
+        packets_of_silence * samples * mode_.sample_duration,
+        talk_.link().is_network() ? network_silence : shortest_silence
+    );
 }
 
 asio::awaitable<Result<void>> Scan::read_stream(protocol::AnswerType type) {
@@ -58,6 +87,7 @@ asio::awaitable<Result<void>> Scan::read_stream(protocol::AnswerType type) {
     if (!reader) {
         co_return reader.error();
     }
+    const auto silence_limit = silence_after(type);
     std::vector<protocol::Sweep> finished;
     bool begun = false;
     for (;;) {
@@ -76,11 +106,11 @@ asio::awaitable<Result<void>> Scan::read_stream(protocol::AnswerType type) {
         }
         if (samples > 0 && !std::exchange(begun, true)) {
             samples_due_ = now + silence_limit;
-            turn_due_ = now + turn_limit;
+            turn_due_ = now + turn_limit;  // from here on a stopped motor shows
             observer_.on_first_samples();
         }
         if (!finished.empty()) {
-            turn_due_ = std::max(turn_due_, now + turn_limit);
+            turn_due_ = std::max(turn_due_, now + next_turn_limit(finished.back().period));
         } else if (now >= turn_due_) {
             co_return make_error_code(errc::not_turning);
         }

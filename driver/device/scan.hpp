@@ -61,6 +61,8 @@ public:
 private:
     boost::asio::awaitable<Result<void>> obey_regulator();
     boost::asio::awaitable<Result<void>> read_stream(protocol::AnswerType type);
+    [[nodiscard]] std::chrono::steady_clock::duration silence_after(protocol::AnswerType type
+    ) const;
 
     Conversation& talk_;
     const ScanMode& mode_;

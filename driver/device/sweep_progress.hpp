@@ -25,6 +25,7 @@ struct SweepProgress {
     /// As the CapturedSweep will have them.
     std::chrono::nanoseconds monotonic_to_unix{};
     std::chrono::nanoseconds clock_step{};
+    std::chrono::nanoseconds gap{};
     /// When the last byte arrived that was read.
     protocol::SampleTime arrival{};
 };

@@ -3,6 +3,7 @@
 #include "driver/device/device.hpp"
 
 #include "driver/device/error.hpp"
+#include "driver/link/error.hpp"
 #include "tests/driver/device/fake_scanner.hpp"
 #include "tests/driver/device/memory_link.hpp"
 
@@ -18,6 +19,7 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -33,6 +35,12 @@ using testing::Contains;
 using testing::HasSubstr;
 
 constexpr auto patience = 10s;
+constexpr RecoveryPolicy at_once{.attempts = {1ms, 1ms}, .resets = 0};
+constexpr RecoveryPolicy resets_at_once{
+    .attempts = {1ms, 1ms},
+    .resets = 2,
+    .reset_waits = {1ms, 1ms}};
+constexpr RecoveryPolicy not_again{.attempts = {1h, 1h}, .resets = 0, .restarts = 0};
 
 Diagnosis a_diagnosis() {
     Diagnosis diagnosis;
@@ -86,8 +94,12 @@ public:  // the tests' coroutines are lambdas, which inherit no access
         EXPECT_TRUE(std::equal(gathered.begin(), gathered.end(), samples.begin()));
     }
 
-    Device& make_device(DeviceOptions options = {.retry_delay = 1ms}) {
+    Device& make_device(
+        DeviceOptions options = {.recovery = at_once},
+        std::function<asio::awaitable<void>(std::chrono::steady_clock::time_point)> wait = {}
+    ) {
         options.health_interval = 10ms;
+        options.look_interval = 1ms;
         auto open = [this](std::uint32_t baud
                     ) -> asio::awaitable<Result<std::unique_ptr<link::Link>, Problem>> {
             ++opened;
@@ -101,7 +113,13 @@ public:  // the tests' coroutines are lambdas, which inherit no access
             }
             co_return std::unique_ptr<link::Link>(std::make_unique<MemoryLink>(line));
         };
-        device = std::make_unique<Device>(context.get_executor(), open, options, *this, log);
+        device = std::make_unique<Device>(
+            context.get_executor(),
+            Port{open, std::move(wait)},
+            options,
+            *this,
+            log
+        );
         return *device;
     }
 
@@ -165,10 +183,11 @@ TEST_F(DeviceTest, IdentifiesThenScansThenDeliversSweeps) {
     make_device();
     play(until([this] { return sweeps.size() >= 2; }));
 
-    ASSERT_GE(phases.size(), 3U);
-    EXPECT_EQ(phases[0], Phase::identifying);
-    EXPECT_EQ(phases[1], Phase::starting);
-    EXPECT_EQ(phases[2], Phase::scanning);
+    ASSERT_GE(phases.size(), 4U);
+    EXPECT_EQ(phases[0], Phase::opening);
+    EXPECT_EQ(phases[1], Phase::identifying);
+    EXPECT_EQ(phases[2], Phase::starting);
+    EXPECT_EQ(phases[3], Phase::scanning);
     ASSERT_GE(sweeps.size(), 2U);
     EXPECT_EQ(sweeps[0].sweep.samples.size(), 360U);
     EXPECT_EQ(sweeps[0].sequence, 1U);
@@ -247,7 +266,7 @@ TEST_F(DeviceTest, SwitchesTheMotorByRequestWhereTheLineHasNoDtr) {
 }
 
 TEST_F(DeviceTest, StaysIdleWhenNotToldToScan) {
-    make_device({.scan_at_once = false, .retry_delay = 1ms});
+    make_device({.scan_at_once = false, .recovery = at_once});
     play(until_phase(Phase::idle));
 
     EXPECT_EQ(scanner.count(Command::express_scan), 0U);
@@ -297,7 +316,7 @@ TEST_F(DeviceTest, SaysWhyAPortDoesNotOpenAndTriesAgain) {
     open_problem = Problem{make_error_code(errc::no_answer), "no such port", "plug it in"};
     make_device();
     play([](DeviceTest& test) -> asio::awaitable<void> {
-        co_await test.until_phase(Phase::failed);
+        co_await test.until_phase(Phase::backing_off);
         EXPECT_EQ(test.device->state().cause, "no such port");
         EXPECT_EQ(test.device->state().hint, "plug it in");
         test.open_problem.reset();
@@ -311,7 +330,7 @@ TEST_F(DeviceTest, FailsWithAdviceWhenNothingAnswers) {
     scanner.answers = false;
     make_device();
     play([](DeviceTest& test) -> asio::awaitable<void> {
-        co_await test.until_phase(Phase::failed);
+        co_await test.until_phase(Phase::backing_off);
         EXPECT_THAT(test.device->state().cause, HasSubstr("does not answer"));
         EXPECT_THAT(test.device->state().hint, HasSubstr("power"));
     }(*this));
@@ -319,7 +338,7 @@ TEST_F(DeviceTest, FailsWithAdviceWhenNothingAnswers) {
 
 TEST_F(DeviceTest, StartTellsWhyAFailedLidarCannotBeStarted) {
     open_problem = Problem{make_error_code(errc::no_answer), "no such port", "plug it in"};
-    make_device({.scan_at_once = false, .retry_delay = 1ms});
+    make_device({.scan_at_once = false, .recovery = at_once});
     play([](DeviceTest& test) -> asio::awaitable<void> {
         const auto started = co_await test.device->start("");
         EXPECT_FALSE(started);
@@ -333,7 +352,7 @@ TEST_F(DeviceTest, ComesBackAfterTheCableWasPulled) {
         co_await test.until([&test] { return test.sweeps.size() >= 2; });
         const auto last = test.sweeps.back().sequence;
         test.line.unplug();
-        co_await test.until_phase(Phase::failed);
+        co_await test.until_phase(Phase::backing_off);
         EXPECT_THAT(test.device->state().hint, HasSubstr("cable"));
         co_await test.until([&test, last] { return test.sweeps.back().sequence > last; });
     }(*this));
@@ -355,7 +374,7 @@ TEST_F(DeviceTest, ReportsAProtectionStopAndLeavesItByReset) {
     scanner.health = {protocol::HealthStatus::error, 0x8001};
     make_device();
     play([](DeviceTest& test) -> asio::awaitable<void> {
-        co_await test.until_phase(Phase::protection_stop);
+        co_await test.until_phase(Phase::failed);
         EXPECT_THAT(test.device->state().hint, HasSubstr("reset"));
         EXPECT_EQ(test.scanner.count(Command::express_scan), 0U);
         const auto reset = co_await test.device->reset();
@@ -370,7 +389,7 @@ TEST_F(DeviceTest, ResetSaysSoWhenTheFaultStays) {
     scanner.reset_heals = false;
     make_device();
     play([](DeviceTest& test) -> asio::awaitable<void> {
-        co_await test.until_phase(Phase::protection_stop);
+        co_await test.until_phase(Phase::failed);
         const auto reset = co_await test.device->reset();
         EXPECT_FALSE(reset);
         EXPECT_THAT(reset.error().cause, HasSubstr("protection stop"));
@@ -378,7 +397,7 @@ TEST_F(DeviceTest, ResetSaysSoWhenTheFaultStays) {
 }
 
 TEST_F(DeviceTest, ResetOfAnIdleLidarLeavesItIdle) {
-    make_device({.scan_at_once = false, .retry_delay = 1ms});
+    make_device({.scan_at_once = false, .recovery = at_once});
     play([](DeviceTest& test) -> asio::awaitable<void> {
         co_await test.until_phase(Phase::idle);
         EXPECT_TRUE(co_await test.device->reset());
@@ -398,10 +417,10 @@ TEST_F(DeviceTest, AStopDuringStartingWins) {
 }
 
 TEST_F(DeviceTest, SilenceInMidScanIsAFailureWithACauseAndTheMotorOff) {
-    make_device({.retry_delay = 1h});
+    make_device({.recovery = not_again});
     play([](DeviceTest& test) -> asio::awaitable<void> {
         co_await test.until_phase(Phase::scanning);  // the fake sends three turns and falls silent
-        co_await test.until_phase(Phase::failed);
+        co_await test.until_phase(Phase::backing_off);
         EXPECT_THAT(test.device->state().cause, HasSubstr("no samples"));
         EXPECT_THAT(test.device->state().hint, HasSubstr("motor"));
         EXPECT_EQ(test.line.dtr, true);
@@ -410,7 +429,7 @@ TEST_F(DeviceTest, SilenceInMidScanIsAFailureWithACauseAndTheMotorOff) {
 }
 
 TEST_F(DeviceTest, SamplesOfALidarThatDoesNotTurnAreAFailureWithACauseAndTheMotorOff) {
-    make_device({.retry_delay = 1h});
+    make_device({.recovery = not_again});
     play([](DeviceTest& test) -> asio::awaitable<void> {
         co_await test.until_phase(Phase::scanning);
         test.spawn([](DeviceTest& itself) -> asio::awaitable<void> {
@@ -420,7 +439,7 @@ TEST_F(DeviceTest, SamplesOfALidarThatDoesNotTurnAreAFailureWithACauseAndTheMoto
                 co_await never.wait_until(std::chrono::steady_clock::now() + 1ms);
             }
         }(test));
-        co_await test.until_phase(Phase::failed);
+        co_await test.until_phase(Phase::backing_off);
         EXPECT_THAT(test.device->state().cause, HasSubstr("no complete turn"));
         EXPECT_THAT(test.device->state().hint, HasSubstr("motor"));
         EXPECT_EQ(test.line.dtr, true);
@@ -428,7 +447,7 @@ TEST_F(DeviceTest, SamplesOfALidarThatDoesNotTurnAreAFailureWithACauseAndTheMoto
 }
 
 TEST_F(DeviceTest, AModeAskedForBeforeTheModesAreKnownIsRefusedOnceTheyAre) {
-    make_device({.scan_at_once = false, .retry_delay = 1ms});
+    make_device({.scan_at_once = false, .recovery = at_once});
     play([](DeviceTest& test) -> asio::awaitable<void> {
         const auto started = co_await test.device->start("Turbo");
         EXPECT_FALSE(started);
@@ -437,22 +456,22 @@ TEST_F(DeviceTest, AModeAskedForBeforeTheModesAreKnownIsRefusedOnceTheyAre) {
 }
 
 TEST_F(DeviceTest, AnIdleLidarThatFallsSilentIsNoticed) {
-    make_device({.scan_at_once = false, .retry_delay = 1ms});
+    make_device({.scan_at_once = false, .recovery = at_once});
     play([](DeviceTest& test) -> asio::awaitable<void> {
         co_await test.until_phase(Phase::idle);
         test.scanner.answers = false;
-        co_await test.until_phase(Phase::failed);
+        co_await test.until_phase(Phase::backing_off);
     }(*this));
 }
 
 TEST_F(DeviceTest, AnIdleLidarThatBabblesIsAskedAllTheSame) {
-    make_device({.scan_at_once = false, .retry_delay = 1h});
+    make_device({.scan_at_once = false, .recovery = not_again});
     play([](DeviceTest& test) -> asio::awaitable<void> {
         co_await test.until_phase(Phase::idle);
         test.scanner.answers = false;
         test.line.babbles = true;
         test.line.changed.notify();
-        co_await test.until_phase(Phase::failed);
+        co_await test.until_phase(Phase::backing_off);
     }(*this));
 }
 
@@ -460,7 +479,7 @@ TEST_F(DeviceTest, TellsWhenTheCodeOfAProtectionStopChanges) {
     scanner.health = {protocol::HealthStatus::error, 0x8001};
     make_device();
     play([](DeviceTest& test) -> asio::awaitable<void> {
-        co_await test.until_phase(Phase::protection_stop);
+        co_await test.until_phase(Phase::failed);
         test.scanner.health.code = 0x8002;
         co_await test.until([&test] { return test.told_code == 0x8002; });
     }(*this));
@@ -470,18 +489,136 @@ TEST_F(DeviceTest, AProtectionStopThatEndsByItselfIsNoticed) {
     scanner.health = {protocol::HealthStatus::error, 0x8001};
     make_device();
     play([](DeviceTest& test) -> asio::awaitable<void> {
-        co_await test.until_phase(Phase::protection_stop);
+        co_await test.until_phase(Phase::failed);
         test.scanner.health = {};
         co_await test.until_phase(Phase::scanning);
     }(*this));
     EXPECT_EQ(scanner.count(Command::reset), 0U);
 }
 
+TEST_F(DeviceTest, AProtectionStopIsLeftByItself) {
+    scanner.health = {protocol::HealthStatus::error, 0x8001};
+    make_device({.recovery = resets_at_once});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);
+        EXPECT_EQ(test.device->state().recoveries, 1U);
+    }(*this));
+    EXPECT_THAT(phases, Contains(Phase::protection_stop));
+    EXPECT_THAT(phases, Contains(Phase::resetting));
+    EXPECT_EQ(scanner.count(Command::reset), 1U);
+    EXPECT_EQ(opened, 1);
+}
+
+TEST_F(DeviceTest, AProtectionStopThatResetsDoNotHelpIsLeftToTheUser) {
+    scanner.health = {protocol::HealthStatus::error, 0x8001};
+    scanner.reset_heals = false;
+    make_device({.recovery = resets_at_once});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::failed);
+        EXPECT_THAT(test.device->state().cause, HasSubstr("2 resets have not helped"));
+        EXPECT_THAT(test.device->state().hint, HasSubstr("unplug it"));
+        EXPECT_EQ(test.scanner.count(Command::reset), 2U);
+        test.scanner.reset_heals = true;
+        const auto reset = co_await test.device->reset();
+        EXPECT_TRUE(reset) << "the user may try again";
+    }(*this));
+    EXPECT_EQ(opened, 1);
+}
+
+TEST_F(DeviceTest, AProtectionStopOfALidarThatIsNotToScanIsLeftAlone) {
+    scanner.health = {protocol::HealthStatus::error, 0x8001};
+    make_device({.scan_at_once = false, .recovery = resets_at_once});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::protection_stop);
+        EXPECT_THAT(test.device->state().cause, HasSubstr("error code 32769 (0x8001)"));
+        EXPECT_THAT(test.device->state().hint, HasSubstr("reset"));
+        test.scanner.health.code = 0x8002;
+        co_await test.until([&test] { return test.told_code == 0x8002; });  // it is asked on
+    }(*this));
+    EXPECT_EQ(scanner.count(Command::reset), 0U);
+}
+
+TEST_F(DeviceTest, AStalledScanIsBegunAgainOnTheSameConnection) {
+    make_device({.recovery = resets_at_once});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until([&test] { return test.sweeps.size() >= 2; });
+        const auto last = test.sweeps.back();  // the fake sends three turns and falls silent
+        co_await test.until_phase(Phase::stalled);
+        EXPECT_THAT(test.device->state().cause, HasSubstr("no samples"));
+        const auto before = test.sweeps.size();
+        co_await test.until([&test, before] { return test.sweeps.size() > before; });
+        EXPECT_EQ(test.sweeps[before].sequence, test.sweeps[before - 1].sequence + 1);
+        EXPECT_GT(test.sweeps[before].gap, 0ns);
+        EXPECT_EQ(last.gap, 0ns);
+        EXPECT_GE(test.device->state().recoveries, 1U);
+    }(*this));
+    EXPECT_EQ(opened, 1);
+}
+
+TEST_F(DeviceTest, AScanThatStallsMoreOftenThanItMayHasThePortOpenedAnew) {
+    make_device({.recovery = {.attempts = {1ms, 1ms}, .restarts = 0}});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until([&test] { return test.opened >= 2; });
+    }(*this));
+    EXPECT_THAT(phases, Contains(Phase::stalled));
+    EXPECT_THAT(phases, Contains(Phase::backing_off));
+}
+
+TEST_F(DeviceTest, APortThatIsNotThereIsAwaited) {
+    const auto missing = make_error_code(link::errc::port_not_found);
+    open_problem = Problem{missing, "there is no port here", "plug it in"};
+    int looks = 0;
+    make_device(
+        {.recovery = not_again},
+        [this, &looks](std::chrono::steady_clock::time_point) -> asio::awaitable<void> {
+            if (++looks == 3) {
+                open_problem.reset();
+            }
+            co_return;
+        }
+    );
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::absent);
+        EXPECT_EQ(test.device->state().cause, "there is no port here");
+        EXPECT_FALSE(test.device->state().next_attempt) << "it is met when it comes";
+        co_await test.until_phase(Phase::scanning);
+        EXPECT_FALSE(test.device->state().failing_since);
+        EXPECT_EQ(test.device->state().recoveries, 1U);
+    }(*this));
+    EXPECT_EQ(std::ranges::count(phases, Phase::absent), 1) << "looking again in vain is no news";
+}
+
+TEST_F(DeviceTest, SaysWhenItIsTriedAgain) {
+    scanner.answers = false;
+    make_device({.recovery = not_again});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::backing_off);
+        const auto& state = test.device->state();
+        EXPECT_TRUE(state.next_attempt);
+        EXPECT_GE(*state.next_attempt - state.since, 30min) << "half of an hour at least";
+        EXPECT_EQ(state.failing_since, state.since);
+    }(*this));
+}
+
+TEST_F(DeviceTest, AStoppedLidarStaysStoppedThroughARecovery) {
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);
+        EXPECT_TRUE(co_await test.device->stop());
+        test.line.unplug();
+        co_await test.until_phase(Phase::backing_off);
+        const auto scans = test.scanner.count(Command::express_scan);
+        co_await test.until_phase(Phase::idle);
+        EXPECT_EQ(test.scanner.count(Command::express_scan), scans);
+        EXPECT_EQ(test.device->state().recoveries, 1U);
+    }(*this));
+}
+
 TEST_F(DeviceTest, AnExceptionOfTheObserverIsAFailureLikeOthers) {
     make_device();
     sweep_throws = true;
     play([](DeviceTest& test) -> asio::awaitable<void> {
-        co_await test.until_phase(Phase::failed);
+        co_await test.until_phase(Phase::backing_off);
         EXPECT_EQ(test.device->state().cause, "no room for a sweep");
         EXPECT_EQ(test.line.dtr, true) << "the motor turns on";
         EXPECT_THAT(
@@ -500,7 +637,7 @@ TEST_F(DeviceTest, AnErrorOfTheSystemThatIsThrownIsAFailureLikeOthers) {
     ));
     make_device();
     play([](DeviceTest& test) -> asio::awaitable<void> {
-        co_await test.until_phase(Phase::failed);
+        co_await test.until_phase(Phase::backing_off);
         test.open_throws = nullptr;
         co_await test.until_phase(Phase::scanning);
     }(*this));
@@ -518,14 +655,14 @@ TEST_F(DeviceTest, ScansInTheTypicalModeOfALidarThatListsItsModes) {
 
 TEST_F(DeviceTest, ScansInTheModeOfAnId) {
     scanner.list_modes();
-    make_device({.mode = "1", .retry_delay = 1ms});
+    make_device({.mode = "1", .recovery = at_once});
     play(until_phase(Phase::starting));
 
     EXPECT_EQ(device->state().mode, "DenseBoost");
 }
 
 TEST_F(DeviceTest, ChangesTheModeOfAnIdleLidarForTheNextStart) {
-    make_device({.scan_at_once = false, .retry_delay = 1ms});
+    make_device({.scan_at_once = false, .recovery = at_once});
     play([](DeviceTest& test) -> asio::awaitable<void> {
         co_await test.until_phase(Phase::idle);
         const auto changed_mode = co_await test.device->set_mode("standard");
@@ -540,7 +677,7 @@ TEST_F(DeviceTest, ChangesTheModeOfAnIdleLidarForTheNextStart) {
 }
 
 TEST_F(DeviceTest, ScansAllTheSameIfItHasNoSuchModeAndSaysSoUntilItIsToldAnother) {
-    make_device({.mode = "Turbo", .retry_delay = 1ms});
+    make_device({.mode = "Turbo", .recovery = at_once});
     play([](DeviceTest& test) -> asio::awaitable<void> {
         co_await test.until_phase(Phase::scanning);
         EXPECT_THAT(test.device->state().cause, testing::HasSubstr("no scan mode \"Turbo\""));
@@ -578,7 +715,7 @@ TEST_F(DeviceTest, FindsTheLineSpeedAndGoesThereFirstTheNextTime) {
         EXPECT_EQ(test.opened_at, 115200U);
         EXPECT_EQ(test.device->state().line.baud, 460800U);
         test.line.unplug();
-        co_await test.until_phase(Phase::failed);
+        co_await test.until_phase(Phase::backing_off);
         co_await test.until_phase(Phase::scanning);
         EXPECT_EQ(test.opened_at, 460800U);
     }(*this));
@@ -586,7 +723,7 @@ TEST_F(DeviceTest, FindsTheLineSpeedAndGoesThereFirstTheNextTime) {
 
 TEST_F(DeviceTest, LooksAtTheHintedLineSpeedFirst) {
     scanner.baud = 256000;
-    make_device({.baud_hints = {256000}, .retry_delay = 1ms});
+    make_device({.baud_hints = {256000}, .recovery = at_once});
     play(until_phase(Phase::scanning));
     EXPECT_EQ(opened_at, 256000U);
 }
@@ -594,7 +731,7 @@ TEST_F(DeviceTest, LooksAtTheHintedLineSpeedFirst) {
 TEST_F(DeviceTest, TalksTheLidarIntoTheLineSpeedThatWasAskedFor) {
     scanner.info.firmware_minor = 30;
     scanner.negotiates = true;
-    make_device({.baud = 230400, .retry_delay = 1ms});
+    make_device({.baud = 230400, .recovery = at_once});
     scanner.baud = 115200;
     play(until_phase(Phase::scanning));
     EXPECT_EQ(device->state().line.baud, 230400U);
@@ -602,7 +739,7 @@ TEST_F(DeviceTest, TalksTheLidarIntoTheLineSpeedThatWasAskedFor) {
 }
 
 TEST_F(DeviceTest, UsesTheLidarsOwnLineSpeedIfItCannotBeTalkedIntoAnother) {
-    make_device({.baud = 230400, .retry_delay = 1ms});
+    make_device({.baud = 230400, .recovery = at_once});
     play(until_phase(Phase::scanning));
     EXPECT_EQ(device->state().line.baud, 115200U);
 }
@@ -615,7 +752,7 @@ TEST_F(DeviceTest, ANetworkHasNoLineSpeedToFind) {
 }
 
 TEST_F(DeviceTest, TellsTheSpeedOfTheRotationAndTheStateOfTheLine) {
-    make_device({.retry_delay = 1ms, .report_interval = 0ms});
+    make_device({.recovery = at_once, .report_interval = 0ms});
     play(until([this] { return sweeps.size() >= 2; }));
     EXPECT_EQ(device->state().rotation.control, SpeedControl::fixed);
     EXPECT_EQ(device->state().line.samples, 3U * 360U);
@@ -633,7 +770,7 @@ TEST_F(DeviceTest, RefusesASpeedThatCannotBeSet) {
 }
 
 TEST_F(DeviceTest, WarnsThatASpeedAskedForAtTheStartCannotBeSet) {
-    make_device({.speed_hz = 7.0, .retry_delay = 1ms});
+    make_device({.speed_hz = 7.0, .recovery = at_once});
     play(until_phase(Phase::scanning));
     EXPECT_THAT(device->state().rotation.warning, HasSubstr("cannot be changed"));
 }
@@ -673,7 +810,7 @@ TEST_F(DeviceTest, TheSameSpeedAgainDoesNotBeginTheRegulationAnew) {
 TEST_F(DeviceTest, TellsALidarThatRegulatesItsSpeedTheRpm) {
     scanner.info.model = 0x61;
     scanner.list_modes();
-    make_device({.mode = "Standard", .speed_hz = 7.0, .retry_delay = 1ms});
+    make_device({.mode = "Standard", .speed_hz = 7.0, .recovery = at_once});
     play(until_phase(Phase::scanning));
     EXPECT_THAT(scanner.requests, Contains(protocol::motor_rpm_request(420)));
     EXPECT_EQ(scanner.requests.back(), protocol::motor_rpm_request(0));
@@ -691,9 +828,9 @@ TEST_F(DeviceTest, LeavesTheMotorOfALidarThatSpinsByItselfAlone) {
 
 TEST_F(DeviceTest, AnExaminationHasThePortToItself) {
     scanner.answers = false;
-    make_device({.retry_delay = 1h});
+    make_device({.recovery = not_again});
     play([](DeviceTest& test) -> asio::awaitable<void> {
-        co_await test.until_phase(Phase::failed);
+        co_await test.until_phase(Phase::backing_off);
         const auto diagnosis =
             co_await test.device->diagnose([&test]() -> asio::awaitable<Diagnosis> {
                 EXPECT_FALSE(test.device->in_hand());
@@ -721,7 +858,7 @@ TEST_F(DeviceTest, ALidarInHandIsNotExaminedFromOutside) {
 
 TEST_F(DeviceTest, AnExaminationInterruptsAnAttempt) {
     scanner.answers = false;
-    make_device({.retry_delay = 1h});
+    make_device({.recovery = not_again});
     play([](DeviceTest& test) -> asio::awaitable<void> {
         co_await test.until_phase(Phase::identifying);
         const auto diagnosis = co_await test.device->diagnose([]() -> asio::awaitable<Diagnosis> {
@@ -733,9 +870,9 @@ TEST_F(DeviceTest, AnExaminationInterruptsAnAttempt) {
 
 TEST_F(DeviceTest, AnExaminationThatFailsIsNoneAndTheLidarIsTriedAgain) {
     scanner.answers = false;
-    make_device({.retry_delay = 1h});
+    make_device({.recovery = not_again});
     play([](DeviceTest& test) -> asio::awaitable<void> {
-        co_await test.until_phase(Phase::failed);
+        co_await test.until_phase(Phase::backing_off);
         const auto diagnosis =
             co_await test.device->diagnose([&test]() -> asio::awaitable<Diagnosis> {
                 test.scanner.answers = true;
@@ -754,7 +891,7 @@ TEST_F(DeviceTest, AnExaminationAskedForDuringAResetFindsTheLidarInHandAfterIt) 
         test.spawn([](DeviceTest& itself) -> asio::awaitable<void> {
             (void)co_await itself.device->reset();
         }(test));
-        co_await test.until_phase(Phase::identifying);
+        co_await test.until_phase(Phase::resetting);
         const auto diagnosis = co_await test.device->diagnose([]() -> asio::awaitable<Diagnosis> {
             ADD_FAILURE() << "the port is in use";
             co_return Diagnosis{};
@@ -766,9 +903,9 @@ TEST_F(DeviceTest, AnExaminationAskedForDuringAResetFindsTheLidarInHandAfterIt) 
 
 TEST_F(DeviceTest, ShuttingDownEndsAnExamination) {
     open_problem = Problem{make_error_code(errc::no_answer), "no such port", "plug it in"};
-    make_device({.retry_delay = 1h});
+    make_device({.recovery = not_again});
     play([](DeviceTest& test) -> asio::awaitable<void> {
-        co_await test.until_phase(Phase::failed);
+        co_await test.until_phase(Phase::backing_off);
         const auto diagnosis =
             co_await test.device->diagnose([&test]() -> asio::awaitable<Diagnosis> {
                 asio::post(test.context, [&test] { test.device->shut_down(); });
