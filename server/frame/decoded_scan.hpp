@@ -22,6 +22,8 @@ struct DecodedScan {
     std::chrono::nanoseconds first_unix{};
     /// By how much the wall clock was set since the scan before; 0: it was not.
     std::chrono::nanoseconds clock_step{};
+    /// For how long the lidar was not seen before this sweep; 0: it follows on from the one before.
+    std::chrono::nanoseconds gap{};
     /// Columns that are not there. Times are sample_duration apart then.
     bool without_quality{};
     bool without_flags{};

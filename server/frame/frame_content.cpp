@@ -13,6 +13,7 @@ FrameContent whole_sweep(const device::CapturedSweep& captured) {
     content.monotonic_to_unix = captured.monotonic_to_unix;
     content.time_uncertainty = captured.sweep.time_uncertainty;
     content.clock_step = captured.clock_step;
+    content.gap = captured.gap;
     content.period = captured.sweep.period;
     content.losses = captured.sweep.losses;
     return content;
@@ -29,6 +30,7 @@ FrameContent sweep_under_way(std::string_view lidar, const device::SweepProgress
     content.monotonic_to_unix = progress.monotonic_to_unix;
     content.time_uncertainty = progress.sweep.time_uncertainty;
     content.clock_step = progress.clock_step;
+    content.gap = progress.gap;
     return content;
 }
 

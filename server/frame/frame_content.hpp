@@ -37,6 +37,8 @@ struct FrameContent {
     std::chrono::microseconds time_uncertainty{};
     /// By how much the wall clock was set since the scan before; 0: it was not.
     std::chrono::nanoseconds clock_step{};
+    /// For how long the lidar was not seen before this sweep; 0: it follows on from the one before.
+    std::chrono::nanoseconds gap{};
     /// Of the whole sweep; for a slice, known with the last one.
     std::chrono::microseconds period{};
     protocol::LineLosses losses;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <optional>
 #include <ratio>
 #include <span>
@@ -23,6 +24,7 @@ using protocol::Sample;
 using Samples = std::span<Sample>;
 
 constexpr std::uint32_t largest_byte = 255;
+constexpr std::uint64_t longest_gap = std::numeric_limits<std::int64_t>::max();
 
 bool is_left_out(const v1::Scan& scan, v1::Column column) {
     return std::find(scan.left_out().begin(), scan.left_out().end(), column) !=
@@ -264,6 +266,9 @@ Result<DecodedScan> from_columns(const v1::Scan& scan) {
     decoded.first_unix = std::chrono::nanoseconds(static_cast<std::int64_t>(scan.first_unix_ns()));
     decoded.sweep.time_uncertainty = std::chrono::microseconds(scan.time_uncertainty_us());
     decoded.clock_step = std::chrono::nanoseconds(scan.wall_clock_step_ns());
+    decoded.gap = std::chrono::nanoseconds(
+        static_cast<std::int64_t>(std::min<std::uint64_t>(scan.gap_ns(), longest_gap))
+    );
     decoded.without_quality = is_left_out(scan, v1::QUALITY);
     decoded.without_flags = is_left_out(scan, v1::FLAG);
     decoded.without_times = is_left_out(scan, v1::TIME);

@@ -175,6 +175,7 @@ void write_times(const FrameContent& content, bool left_out, v1::Scan& scan) {
     scan.set_sample_period_ns(to_uint32(content.sample_duration.count()));
     scan.set_time_uncertainty_us(to_uint32(content.time_uncertainty.count()));
     scan.set_wall_clock_step_ns(content.clock_step.count());
+    scan.set_gap_ns(static_cast<std::uint64_t>(std::max<std::int64_t>(content.gap.count(), 0)));
     if (content.samples.empty()) {
         return;
     }

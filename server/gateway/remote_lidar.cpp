@@ -59,6 +59,7 @@ device::CapturedSweep captured(const client::JoinedSweep& joined, const hub::Lid
     sweep.sample_duration =
         std::chrono::duration_cast<std::chrono::microseconds>(scan.sample_duration);
     sweep.clock_step = scan.clock_step;
+    sweep.gap = scan.gap;
     return sweep;
 }
 
@@ -249,11 +250,11 @@ void RemoteLidar::give_up(Problem why) {
 /// Tells that it cannot be had, and of what is known of it.
 void RemoteLidar::fail(const Problem& why) {
     hub::LidarSnapshot snapshot = *snapshot_;
-    if (snapshot.state.phase == device::Phase::failed && snapshot.state.cause == why.cause) {
+    if (snapshot.state.phase == device::Phase::backing_off && snapshot.state.cause == why.cause) {
         return;  // one attempt of many
     }
     log_->warn("{}: {}; {}", place_.url, why.cause, why.hint);
-    snapshot.state.phase = device::Phase::failed;
+    snapshot.state.phase = device::Phase::backing_off;
     snapshot.state.since = std::chrono::system_clock::now();
     snapshot.state.cause = why.cause;
     snapshot.state.hint = why.hint;
@@ -312,6 +313,7 @@ void RemoteLidar::publish_sweep(protocol::SampleTime arrival) {
         std::chrono::duration_cast<std::chrono::microseconds>(scan.sample_duration);
     progress.monotonic_to_unix = monotonic_to_unix(scan);
     progress.clock_step = scan.clock_step;
+    progress.gap = scan.gap;
     progress.arrival = arrival;
     hub_.publish(hub::SectorNews{place_.number, frames_.of(snapshot_->id, progress)});
 }

@@ -83,7 +83,8 @@ LidarFrames::sector_of(Stream& stream, frame::FrameContent content, const frame:
     content.sector = stream.next_sector;
     content.last = slice.last;
     if (stream.next_sector > 0) {
-        content.clock_step = {};  // it was told in the first one
+        content.clock_step = {};  // they were told in the first one
+        content.gap = {};
     }
     auto message = encoder_.encode(content, stream.variant->wish(), slice.begin);
     stream.next_sector += message ? 1U : 0U;

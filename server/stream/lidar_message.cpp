@@ -17,6 +17,16 @@ namespace {
 
 v1::Lidar::State to_state(device::Phase phase) {
     switch (phase) {
+    case device::Phase::absent:
+        return v1::Lidar::ABSENT;
+    case device::Phase::opening:
+        return v1::Lidar::OPENING;
+    case device::Phase::stalled:
+        return v1::Lidar::STALLED;
+    case device::Phase::resetting:
+        return v1::Lidar::RESETTING;
+    case device::Phase::backing_off:
+        return v1::Lidar::BACKING_OFF;
     case device::Phase::disconnected:
         return v1::Lidar::DISCONNECTED;
     case device::Phase::identifying:
@@ -79,6 +89,7 @@ void set_line(const device::LineQuality& line, v1::Line& message) {
     message.set_checksum_errors(line.checksum_errors);
     message.set_skipped_bytes(line.skipped_bytes);
     message.set_lost_packets(line.lost_packets);
+    message.set_warning(line.warning);
 }
 
 void set_mode(const device::ScanMode& mode, v1::ScanMode& message) {
@@ -113,20 +124,36 @@ void set_time(std::chrono::system_clock::time_point time, google::protobuf::Time
     );
 }
 
+void set_change(const device::PhaseChange& change, v1::StateChange& message) {
+    message.set_from(to_state(change.from));
+    message.set_to(to_state(change.to));
+    set_time(change.at, *message.mutable_at());
+    message.set_cause(change.cause);
+}
+
+std::chrono::system_clock::time_point to_time(const google::protobuf::Timestamp& message) {
+    constexpr std::int64_t last_second = 9'000'000'000;  // of what nanoseconds can count
+    return std::chrono::system_clock::time_point(
+        std::chrono::seconds(std::clamp<std::int64_t>(message.seconds(), 0, last_second)) +
+        std::chrono::nanoseconds(message.nanos())
+    );
+}
+
 device::Phase to_phase(v1::Lidar::State state) {
-    for (const auto phase :
-         {device::Phase::identifying,
-          device::Phase::idle,
-          device::Phase::starting,
-          device::Phase::scanning,
-          device::Phase::stopping,
-          device::Phase::protection_stop,
-          device::Phase::failed}) {
+    for (const auto phase : device::all_phases) {
         if (to_state(phase) == state) {
             return phase;
         }
     }
     return device::Phase::disconnected;
+}
+
+device::PhaseChange to_change(const v1::StateChange& message) {
+    return {
+        to_phase(message.from()),
+        to_phase(message.to()),
+        to_time(message.at()),
+        message.cause()};
 }
 
 std::uint8_t to_byte(std::uint64_t value) {
@@ -180,7 +207,8 @@ device::LineQuality to_line(const v1::Line& message) {
         message.samples(),
         message.checksum_errors(),
         message.skipped_bytes(),
-        message.lost_packets()};
+        message.lost_packets(),
+        message.warning()};
 }
 
 device::ScanMode to_mode(const v1::ScanMode& message) {
@@ -215,15 +243,24 @@ protocol::Health to_health(const v1::Health& message) {
 }  // namespace
 
 device::DeviceState from_message(const v1::Lidar& message) {
-    constexpr std::int64_t last_second = 9'000'000'000;  // of what nanoseconds can count
     device::DeviceState state;
     state.phase = to_phase(message.state());
-    state.since = std::chrono::system_clock::time_point(
-        std::chrono::seconds(std::clamp<std::int64_t>(message.since().seconds(), 0, last_second)) +
-        std::chrono::nanoseconds(message.since().nanos())
-    );
+    state.since = to_time(message.since());
     state.cause = message.cause();
     state.hint = message.hint();
+    if (message.has_next_attempt()) {
+        state.next_attempt = to_time(message.next_attempt());
+    }
+    if (message.has_failing_since()) {
+        state.failing_since = to_time(message.failing_since());
+    }
+    state.recoveries = message.recoveries();
+    state.changes = message.state_changes();
+    for (const auto& change : message.recent()) {
+        if (state.recent.size() < device::recent_changes) {
+            state.recent.push_back(to_change(change));
+        }
+    }
     state.mode = message.mode();
     if (message.has_device()) {
         state.info = to_info(message.device());
@@ -251,6 +288,17 @@ void to_message(const hub::LidarSnapshot& lidar, v1::Lidar& message) {
     set_time(state.since, *message.mutable_since());
     message.set_cause(state.cause);
     message.set_hint(state.hint);
+    if (state.next_attempt) {
+        set_time(*state.next_attempt, *message.mutable_next_attempt());
+    }
+    if (state.failing_since) {
+        set_time(*state.failing_since, *message.mutable_failing_since());
+    }
+    message.set_recoveries(state.recoveries);
+    message.set_state_changes(state.changes);
+    for (const auto& change : state.recent) {
+        set_change(change, *message.add_recent());
+    }
     message.set_mode(state.mode);
     if (state.info) {
         set_device(*state.info, state.alias, *message.mutable_device());

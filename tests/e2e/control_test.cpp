@@ -61,9 +61,9 @@ TEST_F(ControlTest, ResetRebootsTheLidarAndTheScanGoesOn) {
     EXPECT_THAT(answer.body, HasSubstr("\"SCANNING\""));
     lidar.process.wait_for_log("reset");
     lidar.process.wait_for_log("scan started");
-    client.wait_for_state(v1::Lidar::IDENTIFYING);
-    client.wait_for_state(v1::Lidar::SCANNING);
-    client.next_sweep();
+    client.wait_for_state(v1::Lidar::RESETTING);
+    EXPECT_EQ(client.wait_for_state(v1::Lidar::SCANNING).recoveries(), 0U) << "it was told to";
+    EXPECT_GT(client.next_sweep().scan.gap, std::chrono::nanoseconds::zero());
 }
 
 TEST_F(ControlTest, AnUnknownModeIsRefusedAndTheScanGoesOn) {
@@ -99,9 +99,9 @@ TEST(Control, ALidarThatIsNotThereSaysWhyAndAppearsWhenItComes) {
     GatewayProcess gateway({"--lidar", port});
     Subscriber client("tcp://" + gateway.tcp);
     client.subscribe();
-    const auto failed = client.wait_for_state(v1::Lidar::FAILED);
-    EXPECT_THAT(failed.cause(), HasSubstr(port));
-    EXPECT_NE(failed.hint(), "");
+    const auto absent = client.wait_for_state(v1::Lidar::ABSENT);
+    EXPECT_THAT(absent.cause(), HasSubstr(port));
+    EXPECT_NE(absent.hint(), "");
     const auto refused = http(gateway.http, "POST", "/api/v1/lidars/lidar/start");
     EXPECT_EQ(refused.status, 503);
     EXPECT_THAT(refused.body, HasSubstr(port));
@@ -119,9 +119,13 @@ TEST(Control, ALidarThatVanishesIsReportedAndTakenAgain) {
     client.subscribe();
     const auto before = client.next_sweep().sequence;
     lidar.reset();  // killed
-    client.wait_for_state(v1::Lidar::FAILED);
+    client.wait_for_state(v1::Lidar::BACKING_OFF);
+    const auto absent = client.wait_for_state(v1::Lidar::ABSENT);
+    EXPECT_TRUE(absent.has_failing_since());
     lidar = std::make_unique<VirtualLidarProcess>(std::vector<std::string>{"--link", port});
-    EXPECT_GT(client.next_sweep().sequence, before);
+    const auto after = client.next_sweep();
+    EXPECT_GT(after.sequence, before);
+    EXPECT_EQ(client.wait_for_state(v1::Lidar::SCANNING).recoveries(), 1U);
 }
 
 TEST(Control, APatchThatIsRefusedInOnePartChangesNothing) {

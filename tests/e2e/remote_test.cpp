@@ -145,9 +145,9 @@ TEST(RemoteLidar, ComesBackWithItsGateway) {
     far.wait_for_state(v1::Lidar::SCANNING);
     there->process.signal(SIGTERM);
     there->process.wait();
-    const auto failed = far.wait_for_state(v1::Lidar::FAILED);
-    EXPECT_THAT(failed.cause(), HasSubstr("the gateway is shutting down"));
-    EXPECT_EQ(failed.device().model(), "A1M8") << "what is known of it stays known";
+    const auto lost = far.wait_for_state(v1::Lidar::BACKING_OFF);
+    EXPECT_THAT(lost.cause(), HasSubstr("the gateway is shutting down"));
+    EXPECT_EQ(lost.device().model(), "A1M8") << "what is known of it stays known";
     there = std::make_unique<GatewayProcess>(
         std::vector<std::string>{"--lidar", "virtual:a1m8", "--tcp", stream}
     );
@@ -176,8 +176,9 @@ TEST(RemoteLidar, MustBeNamedWhereThereAreSeveral) {
         if (message.has_lidar()) {
             lidars[message.lidar().number()] = message.lidar();
         }
-        return lidars[1].state() == v1::Lidar::FAILED && lidars[2].state() == v1::Lidar::SCANNING &&
-               lidars[3].state() == v1::Lidar::FAILED;
+        return lidars[1].state() == v1::Lidar::BACKING_OFF &&
+               lidars[2].state() == v1::Lidar::SCANNING &&
+               lidars[3].state() == v1::Lidar::BACKING_OFF;
     });
     EXPECT_THAT(lidars[1].cause(), HasSubstr("has 2 lidars"));
     EXPECT_THAT(lidars[1].hint(), HasSubstr("left, right"));

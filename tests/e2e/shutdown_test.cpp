@@ -44,7 +44,7 @@ TEST(Shutdown, WorksWhileALidarIsStarting) {
 
 TEST(Shutdown, WorksWithNoLidarThere) {
     GatewayProcess gateway({"--lidar", "/nonexistent/lidar"});
-    gateway.process.wait_for_log("trying again");
+    gateway.process.wait_for_log("waiting for it");
     gateway.process.signal(SIGTERM);
     EXPECT_EQ(gateway.process.wait(), 0);
 }

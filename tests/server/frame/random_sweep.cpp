@@ -162,6 +162,7 @@ device::CapturedSweep random_sweep(Random& random) {
     captured.sweep.period = std::chrono::microseconds(below(random, 1ULL << 32U));
     captured.sweep.time_uncertainty = std::chrono::microseconds(below(random, 1ULL << 32U));
     captured.clock_step = std::chrono::nanoseconds(static_cast<std::int64_t>(random()));
+    captured.gap = std::chrono::nanoseconds(below(random, 1ULL << 40U));
     captured.sweep.losses = {random(), below(random, 10), 0, below(random, 3)};
     captured.lidar = "A0E1C2D3";
     captured.sequence = random();

@@ -34,20 +34,17 @@ hub::LidarSnapshot full_snapshot() {
          true}};
     state.mode = "Express";
     state.rotation = {device::SpeedControl::duty, 7, 6.9, true, 5.5, 2, 10, "a warning"};
-    state.line = {115'200, 1, 2, 3, 4, 5};
+    state.line = {115'200, 1, 2, 3, 4, 5, "a bad line"};
+    state.next_attempt = state.since + std::chrono::seconds(2);
+    state.failing_since = state.since - std::chrono::seconds(2);
+    state.recoveries = 3;
+    state.changes = 17;
+    state.recent = {{device::Phase::scanning, device::Phase::stalled, state.since, "silence"}};
     return lidar;
 }
 
 TEST(LidarMessageTest, StatesComeBackAsTheyWere) {
-    for (const auto phase :
-         {device::Phase::disconnected,
-          device::Phase::identifying,
-          device::Phase::idle,
-          device::Phase::starting,
-          device::Phase::scanning,
-          device::Phase::stopping,
-          device::Phase::protection_stop,
-          device::Phase::failed}) {
+    for (const auto phase : device::all_phases) {
         auto lidar = full_snapshot();
         lidar.state.phase = phase;
         v1::Lidar first;
