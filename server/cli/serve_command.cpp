@@ -147,8 +147,9 @@ void add_serve_command(CLI::App& app, int& exit_code) {
         "--lidar",
         arguments->lidars,
         "A lidar: a serial port (/dev/ttyUSB0), tcp://HOST[:PORT], udp://HOST[:PORT], or "
-        "virtual:MODEL[?world=FILE] for a virtual one, each with ?name=ID&mode=NAME&hz=SPEED if "
-        "wanted; or another gateway's: sweepcast://HOST[:PORT][/ID][?name=ID]. Repeatable. Without "
+        "virtual:MODEL[?world=FILE] for a virtual one, each with "
+        "?name=ID&mode=NAME&hz=SPEED&motor_off_after=SECONDS (when nobody watches) if wanted; or "
+        "another gateway's: sweepcast://HOST[:PORT][/ID][?name=ID]. Repeatable. Without "
         "it every RPLIDAR found on a USB port is taken, and if there "
         "is "
         "none a virtual one is started"
@@ -196,6 +197,9 @@ void add_serve_command(CLI::App& app, int& exit_code) {
         "ports\n"
         "  sweepcast serve --lidar 'udp://192.168.11.2?hz=10' a network lidar, at 10 turns a "
         "second\n"
+        "  sweepcast serve --lidar '/dev/ttyUSB0?motor_off_after=60'\n"
+        "                                                     whose motor rests while nobody "
+        "watches\n"
         "  sweepcast serve --lidar virtual:a1m8 --http 0.0.0.0:8080\n"
         "                                                     a virtual one, open to the network\n"
         "  sweepcast serve --lidar sweepcast://robot:8081/A0E1C2D3\n"

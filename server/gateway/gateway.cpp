@@ -269,7 +269,8 @@ Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make
         .port_name = name,
         .is_virtual = false,
         .is_stand_in = url.is_stand_in,
-        .port = {}};
+        .port = {},
+        .motor_off_after = url.motor_off_after};
     link::LinkUrl way;
     if (const auto* wanted = std::get_if<VirtualLidarUrl>(&url.where)) {
         auto port = virtual_lidars_.add(*wanted, number, make_logger(place.port_name));

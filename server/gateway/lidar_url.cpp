@@ -129,6 +129,15 @@ std::optional<double> parse_hz(std::string_view text) {
     return is_number && hz >= slowest_hz && hz <= fastest_hz ? std::optional(hz) : std::nullopt;
 }
 
+std::optional<std::chrono::seconds> parse_patience(std::string_view text) {
+    std::int64_t seconds{};
+    const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+    const bool is_number = ec == std::errc() && end == text.data() + text.size();
+    return is_number && seconds >= 1 && seconds <= longest_patience.count()
+               ? std::optional(std::chrono::seconds(seconds))
+               : std::nullopt;
+}
+
 /// Takes in one of the parameters that any lidar may have.
 Result<void, Problem> apply(LidarUrl& url, const link::UrlParameter& parameter) {
     if (parameter.key == "name") {
@@ -164,11 +173,22 @@ Result<void, Problem> apply(LidarUrl& url, const link::UrlParameter& parameter) 
         }
         return {};
     }
+    if (parameter.key == "motor_off_after") {
+        url.motor_off_after = parse_patience(parameter.value);
+        if (!url.motor_off_after) {
+            return bad_url(
+                url.text,
+                fmt::format("\"{}\" is no time to wait", link::printable(parameter.value)),
+                fmt::format("write seconds, 1 to {}", longest_patience.count())
+            );
+        }
+        return {};
+    }
     return bad_url(
         url.text,
         fmt::format("unknown parameter \"{}\"", link::printable(parameter.key)),
-        "there are: name=ID, mode=NAME, hz=SPEED; for a serial port also baud=RATE, as in "
-        "/dev/ttyUSB0?baud=256000; for a virtual lidar world=FILE, "
+        "there are: name=ID, mode=NAME, hz=SPEED, motor_off_after=SECONDS; for a serial "
+        "port also baud=RATE, as in /dev/ttyUSB0?baud=256000; for a virtual lidar world=FILE, "
         "fault=FAULT, schedule=TEXT and control=PATH, as in virtual:a1m8?world=FILE"
     );
 }

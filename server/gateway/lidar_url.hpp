@@ -4,6 +4,7 @@
 #include "driver/link/link_url.hpp"
 #include "driver/protocol/result.hpp"
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -34,12 +35,17 @@ struct RemoteLidarUrl {
 inline constexpr double slowest_hz = 1;
 inline constexpr double fastest_hz = 30;
 
+/// For how long a lidar may be told to turn when nobody watches.
+inline constexpr std::chrono::seconds longest_patience{std::chrono::hours(24)};
+
 struct LidarUrl {
     std::string text;  ///< as the user wrote it
     std::variant<link::LinkUrl, VirtualLidarUrl, RemoteLidarUrl> where;
     std::string name{};          ///< the id it is to have; empty: by its serial number
     std::string mode{};          ///< scan mode by name or id; empty: not asked for
     std::optional<double> hz{};  ///< rotations per second; none: not asked for
+    /// How long it turns on when nobody watches; none: always, or as the gateway is told.
+    std::optional<std::chrono::seconds> motor_off_after{};
     std::optional<std::uint32_t> baud_hint{};  ///< line speed at which it was just found
     /// Nobody asked for it: it stands in for a lidar that was not found.
     bool is_stand_in{};
@@ -49,7 +55,8 @@ struct LidarUrl {
 /// (also "fault=FAULT", "schedule=TEXT" and "control=PATH"; spaces need not be encoded), or
 /// "sweepcast://HOST[:PORT][/ID]" (port 8081), which takes a name only; all others with the
 /// parameters that any lidar may have: "name=left" (1 to 64 of A-Z a-z 0-9 . _ -, not only dots),
-/// "mode=Boost" (name or id), "hz=7.5" (slowest_hz to fastest_hz). The Problem names what is wrong
+/// "mode=Boost" (name or id), "hz=7.5" (slowest_hz to fastest_hz), "motor_off_after=30" (seconds, 1
+/// to longest_patience). The Problem names what is wrong
 /// and shows what can be written.
 [[nodiscard]] Result<LidarUrl, Problem> parse_lidar_url(std::string_view text);
 

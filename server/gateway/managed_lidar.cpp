@@ -3,9 +3,13 @@
 #include "driver/device/advice.hpp"
 #include "driver/diagnosis/diagnose.hpp"
 #include "driver/protocol/reply.hpp"
+#include "server/gateway/demand.hpp"
 #include "server/stream/messages.hpp"
 
+#include <boost/asio/experimental/awaitable_operators.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -35,7 +39,10 @@ ManagedLidar::ManagedLidar(
     , stopped_(ended_.get_future())
     , device_(
           worker.executor(),
-          [port = place_.port.get()](std::uint32_t baud) { return port->open(baud); },
+          {[port = place_.port.get()](std::uint32_t baud) { return port->open(baud); },
+           [port = place_.port.get()](std::chrono::steady_clock::time_point then) {
+               return port->wait_for_change(then);
+           }},
           std::move(options),
           *this,
           log_
@@ -102,7 +109,26 @@ asio::awaitable<void> ManagedLidar::live() {
         std::promise<void>& promise;
         ~Ended() { promise.set_value(); }
     } ended{ended_};
-    co_await device_.run();
+    using namespace asio::experimental::awaitable_operators;
+    if (place_.motor_off_after) {
+        co_await (device_.run() || obey_demand(*place_.motor_off_after));
+    } else {
+        co_await device_.run();
+    }
+}
+
+/// Has the motor off while nobody watches. Looks at a few numbers five times a second, which costs
+/// nothing, and needs nobody to tell it.
+asio::awaitable<void> ManagedLidar::obey_demand(std::chrono::seconds patience) {
+    using namespace std::chrono_literals;
+    Demand demand(patience, std::chrono::steady_clock::now());
+    asio::steady_timer pause(worker_.executor());
+    for (;;) {
+        const bool watched = !hub_.variants().wanted(place_.number).empty();
+        device_.set_demand(demand.take(watched, std::chrono::steady_clock::now()));
+        pause.expires_after(200ms);
+        co_await pause.async_wait(asio::use_awaitable);
+    }
 }
 
 void ManagedLidar::on_state(const device::DeviceState& state) {

@@ -13,6 +13,7 @@
 
 #include <spdlog/logger.h>
 
+#include <chrono>
 #include <cstdint>
 #include <future>
 #include <memory>
@@ -30,6 +31,8 @@ struct LidarPlace {
     bool is_virtual{};
     bool is_stand_in{};
     std::unique_ptr<LidarPort> port;  ///< on the executor of the lidar's worker
+    /// How long it turns on when nobody watches; none: always.
+    std::optional<std::chrono::seconds> motor_off_after{};
 };
 
 class ManagedLidar final : public GatewayLidar, private device::DeviceObserver {
@@ -66,6 +69,7 @@ private:
     void on_sweep(device::CapturedSweep sweep) override;
     void on_progress(const device::SweepProgress& progress) override;
     boost::asio::awaitable<void> live();
+    boost::asio::awaitable<void> obey_demand(std::chrono::seconds patience);
 
     LidarPlace place_;
     async::Worker& worker_;

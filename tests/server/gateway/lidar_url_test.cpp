@@ -113,13 +113,15 @@ TEST(ParseLidarUrl, AsksForNothingUnlessTold) {
 
 class AnyLidarUrlTest : public testing::TestWithParam<const char*> {};
 
-TEST_P(AnyLidarUrlTest, TakesNameModeAndSpeed) {
-    const auto text = std::string(GetParam()) + "?name=left.1_b-2&mode=Boost&hz=7.5";
+TEST_P(AnyLidarUrlTest, TakesNameModeSpeedAndPatience) {
+    const auto text =
+        std::string(GetParam()) + "?name=left.1_b-2&mode=Boost&hz=7.5&motor_off_after=30";
     const auto url = parse_lidar_url(text);
     ASSERT_TRUE(url) << url.error().cause;
     EXPECT_EQ(url->name, "left.1_b-2");
     EXPECT_EQ(url->mode, "Boost");
     EXPECT_EQ(url->hz, 7.5);
+    EXPECT_EQ(url->motor_off_after, std::chrono::seconds(30));
     EXPECT_EQ(url->text, text);
 }
 
@@ -189,6 +191,10 @@ INSTANTIATE_TEST_SUITE_P(
         "hz=-7",
         "hz=nan",
         "hz=inf",
+        "motor_off_after=",
+        "motor_off_after=0",
+        "motor_off_after=1.5",
+        "motor_off_after=86401",
         "hz=7Hz"
     )
 );
