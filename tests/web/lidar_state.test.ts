@@ -31,11 +31,24 @@ for (const [state, actions] of [
   [Lidar_State.STOPPING, []],
   [Lidar_State.PROTECTION_STOP, ["reset"]],
   [Lidar_State.FAILED, ["reset"]],
+  [Lidar_State.ABSENT, []],
+  [Lidar_State.OPENING, []],
+  [Lidar_State.STALLED, ["stop"]],
+  [Lidar_State.RESETTING, []],
+  [Lidar_State.BACKING_OFF, []],
 ] as const) {
   test(`in ${Lidar_State[state]} the user may ${actions.join(" or ") || "only wait"}`, () => {
     assert.deepEqual(offered(state), actions);
   });
 }
+
+test("a lidar that is tried again and again is in one state for who looks at it", () => {
+  const words = [Lidar_State.OPENING, Lidar_State.IDENTIFYING, Lidar_State.BACKING_OFF].map(
+    (state) => stateWords(state, true).word,
+  );
+  assert.deepEqual(new Set(words), new Set(["Trying again"]));
+  assert.equal(stateWords(Lidar_State.IDENTIFYING).word, "Identifying");
+});
 
 test("without a connection nothing may be done", () => {
   for (const state of STATES) assert.deepEqual(offered(state, { connected: false }), []);

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { create, type MessageInitShape } from "@bufbuild/protobuf";
 import { LidarSchema } from "../../web/gen/sweepcast/v1/lidar_pb";
-import { Lidar_State, lidarName, lidarTitle, Lidars } from "../../web/src/lidars";
+import { inTrouble, Lidar_State, lidarName, lidarTitle, Lidars } from "../../web/src/lidars";
 
 const lidar = (fields: MessageInitShape<typeof LidarSchema>) => create(LidarSchema, fields);
 
@@ -37,45 +37,12 @@ test("a new greeting forgets what was before", () => {
   assert.equal(all.find("ttyUSB0"), undefined);
 });
 
-test("a failed lidar that is tried again stays failed, with its cause, since it first did", () => {
-  const all = lidars();
-  const failed = { number: 1, state: Lidar_State.FAILED, cause: "no port", hint: "plug it in" };
-  all.put(lidar({ ...failed, since: { seconds: 100n } }));
-  all.put(lidar({ number: 1, state: Lidar_State.IDENTIFYING, since: { seconds: 102n } }));
-  const meanwhile = all.all()[0]!;
-  assert.equal(meanwhile.state, Lidar_State.FAILED);
-  assert.deepEqual([meanwhile.cause, meanwhile.hint], ["no port", "plug it in"]);
-  all.put(lidar({ ...failed, cause: "no answer", since: { seconds: 104n } }));
-  assert.equal(all.all()[0]!.cause, "no answer");
-  assert.equal(all.all()[0]!.since?.seconds, 100n);
-});
-
-test("a lidar is in trouble from its failure until it is well again", () => {
-  const all = lidars();
-  const troubled = [
-    Lidar_State.STARTING,
-    Lidar_State.FAILED,
-    Lidar_State.IDENTIFYING,
-    Lidar_State.STARTING,
-    Lidar_State.SCANNING,
-    Lidar_State.PROTECTION_STOP,
-    Lidar_State.IDLE,
-  ].map((state) => {
-    all.put(lidar({ number: 1, state }));
-    return all.inTrouble(all.all()[0]!);
-  });
-  assert.deepEqual(troubled, [false, true, true, true, false, true, false]);
-});
-
-test("a failed lidar that is reset, or found, is no longer failed", () => {
-  const all = lidars();
-  all.put(lidar({ number: 1, state: Lidar_State.FAILED, cause: "no port" }));
-  all.put(lidar({ number: 1, state: Lidar_State.IDENTIFYING, cause: "resetting" }));
-  assert.equal(all.all()[0]!.state, Lidar_State.IDENTIFYING);
-  all.put(lidar({ number: 1, state: Lidar_State.FAILED, cause: "no port" }));
-  all.put(lidar({ number: 1, state: Lidar_State.STARTING, since: { seconds: 9n } }));
-  assert.equal(all.all()[0]!.state, Lidar_State.STARTING);
-  assert.equal(all.all()[0]!.cause, "");
+test("a lidar is in trouble for as long as the gateway says that it is failing", () => {
+  const failing = { failingSince: { seconds: 100n } };
+  assert.ok(inTrouble(lidar({ state: Lidar_State.IDENTIFYING, ...failing })));
+  assert.ok(!inTrouble(lidar({ state: Lidar_State.IDENTIFYING })));
+  assert.ok(!inTrouble(lidar({ state: Lidar_State.SCANNING })));
+  assert.ok(inTrouble(lidar({ state: Lidar_State.DISCONNECTED })));
 });
 
 test("the lidar wished for is chosen", () => {

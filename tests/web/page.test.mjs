@@ -530,7 +530,7 @@ if (binary) {
     const rows = await page.locator(".lidar").allTextContents();
     assert.match(rows[0], /A2M8.*Scanning/);
     assert.match(rows[1], /C1.*Scanning/);
-    assert.match(rows[2], new RegExp(`${MISSING}.*Failed`));
+    assert.match(rows[2], new RegExp(`${MISSING}.*Not there`));
   });
 
   test("a speed that is set is reached, and said to be", async () => {

@@ -11,6 +11,7 @@ import {
   metres,
   modeOption,
   modeWords,
+  sinceWords,
   summary,
   virtualWords,
 } from "../../web/src/words";
@@ -34,6 +35,18 @@ for (const [seconds, words] of [
 ] as const) {
   test(`${seconds} seconds are ${words}`, () => {
     assert.equal(duration(seconds), words);
+  });
+}
+
+for (const [fields, words] of [
+  [{}, ""],
+  [{ since: { seconds: 100n } }, "for 12 s"],
+  [{ since: { seconds: 110n }, failingSince: { seconds: 100n } }, "for 12 s"],
+  [{ since: { seconds: 110n }, nextAttempt: { seconds: 115n } }, "for 2 s, next try in 3 s"],
+  [{ since: { seconds: 110n }, nextAttempt: { seconds: 112n } }, "for 2 s"],
+] as const) {
+  test(`the state's time is told as "${words}" (${JSON.stringify(Object.keys(fields))})`, () => {
+    assert.equal(sinceWords(create(LidarSchema, fields), 112), words);
   });
 }
 

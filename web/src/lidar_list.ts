@@ -1,7 +1,7 @@
 // The list of lidars to choose from, each with its model and state. Not shown for a single one.
 import { element, setText } from "./dom";
 import { stateWords } from "./lidar_state";
-import { Lidar_State, lidarTitle, type Lidar } from "./lidars";
+import { inTrouble, Lidar_State, lidarTitle, type Lidar } from "./lidars";
 import { Mark } from "./marks";
 
 class Row {
@@ -23,7 +23,9 @@ class Row {
   }
 
   show(lidar: Lidar, chosen: boolean, connected: boolean): void {
-    const { word, tone } = stateWords(connected ? lidar.state : Lidar_State.UNKNOWN);
+    const { word, tone } = connected
+      ? stateWords(lidar.state, inTrouble(lidar))
+      : stateWords(Lidar_State.UNKNOWN);
     const { title, place } = lidarTitle(lidar);
     this.input.value = lidar.id;
     this.input.checked = chosen;

@@ -8,9 +8,21 @@ export interface StateWords {
   tone: Tone;
 }
 
-/// The state in words, and the tone that gives it its colour and shape.
-export function stateWords(state: Lidar_State): StateWords {
-  switch (state) {
+/// The state in words, and the tone that gives it its colour and shape. A lidar that is tried again and again
+/// is in one state for who looks at it, not in three by turns.
+export function stateWords(state: Lidar_State, failing = false): StateWords {
+  const attempt = state === Lidar_State.OPENING || state === Lidar_State.IDENTIFYING;
+  switch (failing && attempt ? Lidar_State.BACKING_OFF : state) {
+    case Lidar_State.ABSENT:
+      return { word: "Not there", tone: "bad" };
+    case Lidar_State.OPENING:
+      return { word: "Connecting", tone: "busy" };
+    case Lidar_State.STALLED:
+      return { word: "Stalled, starting again", tone: "bad" };
+    case Lidar_State.RESETTING:
+      return { word: "Resetting", tone: "busy" };
+    case Lidar_State.BACKING_OFF:
+      return { word: "Trying again", tone: "bad" };
     case Lidar_State.DISCONNECTED:
       return { word: "Not connected", tone: "bad" };
     case Lidar_State.IDENTIFYING:
@@ -68,18 +80,23 @@ export function buttonsFor(situation: Situation): Record<Action, Button> {
       label: stopping ? "Stopping…" : "Stop",
       // A start or a change of mode that hangs can be called off.
       enabled:
-        connected &&
-        (free || pending === "start" || pending === "mode") &&
-        (state === Lidar_State.SCANNING || state === Lidar_State.STARTING),
+        connected && (free || pending === "start" || pending === "mode") && STOPPABLE.has(state),
       busy: connected && stopping,
     },
     reset: {
-      label: pending === "reset" ? "Resetting…" : "Reset",
+      label: pending === "reset" || state === Lidar_State.RESETTING ? "Resetting…" : "Reset",
       enabled: free && RESETTABLE.has(state),
-      busy: connected && pending === "reset",
+      busy: connected && (pending === "reset" || state === Lidar_State.RESETTING),
     },
   };
 }
+
+// One that is in trouble can be told to stay stopped once it is back.
+const STOPPABLE: ReadonlySet<Lidar_State> = new Set([
+  Lidar_State.SCANNING,
+  Lidar_State.STARTING,
+  Lidar_State.STALLED,
+]);
 
 const RESETTABLE: ReadonlySet<Lidar_State> = new Set([
   Lidar_State.IDLE,

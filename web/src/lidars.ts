@@ -15,27 +15,18 @@ export {
 export class Lidars {
   private byNumber = new Map<number, Lidar>();
   private numberOf = new Map<string, number>();
-  private troubled = new Set<number>();
 
   /// All there are, as told when the stream begins.
   replace(lidars: readonly Lidar[]): void {
     this.byNumber.clear();
     this.numberOf.clear();
-    this.troubled.clear();
     lidars.forEach((lidar) => this.put(lidar));
   }
 
   /// One that is new or has changed.
   put(lidar: Lidar): void {
-    this.byNumber.set(lidar.number, steady(this.byNumber.get(lidar.number), lidar));
+    this.byNumber.set(lidar.number, lidar);
     this.numberOf.set(lidar.id, lidar.number);
-    if (TROUBLE.has(lidar.state)) this.troubled.add(lidar.number);
-    if (WELL.has(lidar.state)) this.troubled.delete(lidar.number);
-  }
-
-  /// Whether it is in trouble: from its failure until it is well again, through all the attempts between.
-  inTrouble(lidar: Lidar): boolean {
-    return this.troubled.has(lidar.number);
   }
 
   /// In the gateway's order.
@@ -62,22 +53,9 @@ export class Lidars {
   }
 }
 
-const TROUBLE: ReadonlySet<Lidar_State> = new Set([
-  Lidar_State.DISCONNECTED,
-  Lidar_State.PROTECTION_STOP,
-  Lidar_State.FAILED,
-]);
-const WELL: ReadonlySet<Lidar_State> = new Set([Lidar_State.IDLE, Lidar_State.SCANNING]);
-
-// The gateway tries a failed lidar again every other second, and tells of each attempt. Meanwhile it stays
-// failed, with its cause and since the first time, so that the page does not flicker between the two.
-function steady(before: Lidar | undefined, lidar: Lidar): Lidar {
-  if (before?.state !== Lidar_State.FAILED) return lidar;
-  const since = before.since && { since: before.since };
-  if (lidar.state === Lidar_State.FAILED) return { ...lidar, ...since };
-  const again = lidar.state === Lidar_State.IDENTIFYING && lidar.cause === "";
-  const { state, cause, hint } = before;
-  return again ? { ...lidar, ...since, state, cause, hint } : lidar;
+/// Whether it is in trouble: from its failure until it is well again, through all the attempts between.
+export function inTrouble(lidar: Lidar): boolean {
+  return lidar.failingSince !== undefined || lidar.state === Lidar_State.DISCONNECTED;
 }
 
 /// What a lidar is and which one of them: its model and its id; or where it is attached, and that is all,

@@ -1,5 +1,5 @@
 // The line's quality in words, with the numbers behind them on demand.
-import { element, setText } from "./dom";
+import { element, setText, showText } from "./dom";
 import { byteWords, lineWords } from "./line";
 import type { Line } from "./lidars";
 import { Mark } from "./marks";
@@ -7,6 +7,7 @@ import { NONE, whole } from "./words";
 
 export class LinePanel {
   private readonly quality = element("line-quality", HTMLElement);
+  private readonly warning = element("line-warning", HTMLElement);
   private readonly mark = new Mark("rest");
   private readonly words = document.createElement("span");
   private readonly numbers = {
@@ -25,6 +26,7 @@ export class LinePanel {
     const { words, mark } = lineWords(line);
     this.mark.show(mark);
     setText(this.words, words);
+    showText(this.warning, line?.warning ?? "");
     const count = (value: bigint | undefined) =>
       value === undefined ? NONE : whole(Number(value));
     setText(this.numbers.bytes, line ? byteWords(line.bytes) : NONE);

@@ -10,7 +10,7 @@ import { element, setText, showText } from "./dom";
 import { listenToGestures, ZOOM_STEP } from "./gestures";
 import { Legend } from "./legend";
 import { LidarList } from "./lidar_list";
-import { Lidar_State, Lidars, type Lidar } from "./lidars";
+import { inTrouble, Lidar_State, Lidars, type Lidar } from "./lidars";
 import { encodeSubscribe, openFrame, type Frame, type ServerMessage } from "./messages";
 import { Panel } from "./panel";
 import { Revolution, type Seen } from "./revolution";
@@ -226,7 +226,7 @@ class Page {
     this.panel.showLidar(this.lidar, connected);
     this.list.show(this.lidars.all(), this.lidar, connected);
     this.controls.show(this.lidar, connected);
-    const trouble = this.lidar !== undefined && this.lidars.inTrouble(this.lidar);
+    const trouble = this.lidar !== undefined && inTrouble(this.lidar);
     this.diagnosis.offer(this.lidar, connected, trouble);
     this.tick();
   }

@@ -1,12 +1,12 @@
 // The panel's readouts: who the lidar is, how it is, and what the stream measures.
 import { element, setText, showText } from "./dom";
 import { stateWords } from "./lidar_state";
-import { Lidar_State, type Lidar } from "./lidars";
+import { inTrouble, Lidar_State, type Lidar } from "./lidars";
 import { baudWords } from "./line";
 import { LinePanel } from "./line_panel";
 import { Mark } from "./marks";
 import type { Sweep } from "./sweep";
-import { decimal, duration, NONE, virtualWords, whole } from "./words";
+import { decimal, NONE, sinceWords, virtualWords, whole } from "./words";
 
 export interface Measured {
   /// What the lidar sees now; undefined if that is not known.
@@ -45,7 +45,9 @@ export class Panel {
   /// of the state is no longer known to be so.
   showLidar(lidar: Lidar | undefined, connected: boolean): void {
     const known = connected ? lidar : undefined;
-    const { word, tone } = stateWords(known?.state ?? Lidar_State.UNKNOWN);
+    const { word, tone } = known
+      ? stateWords(known.state, inTrouble(known))
+      : stateWords(Lidar_State.UNKNOWN);
     this.state.dataset["tone"] = tone;
     this.mark.show(tone);
     setText(this.word, known || !connected ? word : "No lidar");
@@ -61,10 +63,10 @@ export class Panel {
     this.line.show(lidar?.line);
   }
 
-  /// How long the state has lasted, by this device's clock, which may differ from the gateway's.
+  /// How long the state, or the trouble, has lasted, and when the next attempt is, by this device's clock, which
+  /// may differ from the gateway's.
   showSince(lidar: Lidar | undefined, unixS: number): void {
-    const since = lidar?.since ? Number(lidar.since.seconds) : undefined;
-    setText(this.since, since === undefined ? "" : `for ${duration(Math.max(0, unixS - since))}`);
+    setText(this.since, sinceWords(lidar, unixS));
   }
 
   /// Shows the stream's figures; those of a sweep are dashes while none comes.

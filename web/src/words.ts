@@ -1,6 +1,6 @@
 // Numbers and moments in words.
 import { stateWords } from "./lidar_state";
-import type { Lidar, ScanMode } from "./lidars";
+import { inTrouble, type Lidar, type ScanMode } from "./lidars";
 import { nearestObstacle, type Echo, type Sweep } from "./sweep";
 
 /// Stands where there is no value.
@@ -27,6 +27,18 @@ export function duration(seconds: number): string {
   if (seconds < 100 * 60) return `${Math.floor(seconds / 60)} min`;
   if (seconds < 48 * 3600) return `${Math.floor(seconds / 3600)} h`;
   return `${Math.floor(seconds / 86400)} d`;
+}
+
+/// How long a lidar has been in its state, or in trouble, and when it is tried again: "for 12 s, next try in 3 s".
+export function sinceWords(lidar: Lidar | undefined, unixS: number): string {
+  const since = lidar?.failingSince ?? lidar?.since;
+  if (!since) return "";
+  const lasted = `for ${duration(Math.max(0, unixS - Number(since.seconds)))}`;
+  const next = lidar?.nextAttempt;
+  const waitS = next && Number(next.seconds) + next.nanos / 1e9 - unixS;
+  return waitS !== undefined && waitS >= 1
+    ? `${lasted}, next try in ${Math.ceil(waitS)} s`
+    : lasted;
 }
 
 /// An echo for the readout: angle to a hundredth of a degree, distance to the millimetre.
@@ -63,7 +75,8 @@ export function summary(
   sweepsPerS: number | undefined,
 ): string {
   if (connected && !lidar) return "No lidar to show.";
-  const state = connected && lidar ? `${stateWords(lidar.state).word}.` : "Not connected.";
+  const state =
+    connected && lidar ? `${stateWords(lidar.state, inTrouble(lidar)).word}.` : "Not connected.";
   if (!sweep) return `${state} No sweep yet.`;
   const nearest = nearestObstacle(sweep);
   const obstacle = nearest
