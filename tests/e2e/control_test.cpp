@@ -128,6 +128,25 @@ TEST(Control, ALidarThatVanishesIsReportedAndTakenAgain) {
     EXPECT_EQ(client.wait_for_state(v1::Lidar::SCANNING).recoveries(), 1U);
 }
 
+TEST(Control, AMotorRestsWhileNobodyWatchesAndTurnsForTheFirstWhoDoes) {
+    VirtualLidarProcess lidar;
+    GatewayProcess gateway({"--lidar", lidar.port + "?name=mine&motor_off_after=1"});
+    lidar.process.wait_for_log("scan started");
+    lidar.process.wait_for_log("motor off");
+    gateway.process.wait_for_log("idle");
+    EXPECT_THAT(
+        http(gateway.http, "GET", "/api/v1/lidars/mine").body,
+        HasSubstr("nobody watches, so its motor is off")
+    );
+    EXPECT_EQ(http(gateway.http, "POST", "/api/v1/lidars/mine/start").status, 200)
+        << "it is to scan already";
+    Subscriber client("tcp://" + gateway.tcp);
+    client.subscribe();
+    client.next_sweep();
+    EXPECT_EQ(http(gateway.http, "POST", "/api/v1/lidars/mine/stop").status, 200);
+    EXPECT_EQ(client.wait_for_state(v1::Lidar::IDLE).cause(), "") << "its user stopped it";
+}
+
 TEST(Control, APatchThatIsRefusedInOnePartChangesNothing) {
     GatewayProcess gateway({"--lidar", "virtual:s2?name=left"});
     Subscriber client("tcp://" + gateway.tcp);
