@@ -25,6 +25,10 @@ std::string_view next_step_after(error_code code) {
     if (code == errc::protection_stop) {
         return "see that nothing blocks the lidar, then reset it; if this comes back, it is broken";
     }
+    if (code == errc::another_lidar) {
+        return "the one that was there is looked for elsewhere; if it is nowhere, this one takes "
+               "its place";
+    }
     if (code == errc::superseded) {
         return "look at the lidar's state";
     }

@@ -222,6 +222,9 @@ asio::awaitable<Result<void>> Device::find(Conversation& talk) {
     if (!found) {
         co_return found.error();
     }
+    if (port_.is_it && !port_.is_it(found->info)) {
+        co_return make_error_code(errc::another_lidar);
+    }
     state_.line = {.baud = found->baud};
     const auto wish = options_.baud.value_or(found->baud);
     if (wish == found->baud || talk.link().is_network()) {

@@ -55,6 +55,8 @@ struct Port {
     /// then. Empty: nobody can tell, so that only time passes.
     std::function<boost::asio::awaitable<void>(std::chrono::steady_clock::time_point)>
         wait_for_change{};
+    /// Whether the lidar that answers there is the one to have. Empty: any is.
+    std::function<bool(const protocol::DeviceInfo&)> is_it{};
 };
 
 /// Examines the lidar and its port from outside.

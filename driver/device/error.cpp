@@ -31,6 +31,8 @@ public:
             return "the lidar would not be talked into another line speed";
         case errc::superseded:
             return "another command came first";
+        case errc::another_lidar:
+            return "another lidar is on the port";
         case errc::internal:
             return "a fault inside the gateway";
         case errc::shutting_down:

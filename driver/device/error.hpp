@@ -18,6 +18,7 @@ enum class errc {
     superseded,       ///< another command came before this one took effect
     shutting_down,    ///< the gateway is ending
     internal,         ///< a fault of ours
+    another_lidar,    ///< not the one that is expected at this port
 };
 
 boost::system::error_code make_error_code(errc code);

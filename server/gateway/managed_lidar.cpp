@@ -19,6 +19,18 @@ namespace sweepcast::gateway {
 
 namespace asio = boost::asio;
 
+namespace {
+
+device::Port device_port(LidarPort& port) {
+    return {
+        .open = [&port](std::uint32_t baud) { return port.open(baud); },
+        .wait_for_change = [&port](std::chrono::steady_clock::time_point then
+                           ) { return port.wait_for_change(then); },
+        .is_it = [&port](const protocol::DeviceInfo& info) { return port.is_it(info); }};
+}
+
+}  // namespace
+
 ManagedLidar::ManagedLidar(
     LidarPlace place,
     device::DeviceOptions options,
@@ -37,16 +49,7 @@ ManagedLidar::ManagedLidar(
     , frames_(hub.variants(), place_.number)
     , path_(place_.port->path())
     , stopped_(ended_.get_future())
-    , device_(
-          worker.executor(),
-          {[port = place_.port.get()](std::uint32_t baud) { return port->open(baud); },
-           [port = place_.port.get()](std::chrono::steady_clock::time_point then) {
-               return port->wait_for_change(then);
-           }},
-          std::move(options),
-          *this,
-          log_
-      ) {}
+    , device_(worker.executor(), device_port(*place_.port), std::move(options), *this, log_) {}
 
 void ManagedLidar::start() {
     started_ = true;

@@ -96,7 +96,8 @@ public:  // the tests' coroutines are lambdas, which inherit no access
 
     Device& make_device(
         DeviceOptions options = {.recovery = at_once},
-        std::function<asio::awaitable<void>(std::chrono::steady_clock::time_point)> wait = {}
+        std::function<asio::awaitable<void>(std::chrono::steady_clock::time_point)> wait = {},
+        std::function<bool(const protocol::DeviceInfo&)> is_it = {}
     ) {
         options.health_interval = 10ms;
         options.look_interval = 1ms;
@@ -115,7 +116,7 @@ public:  // the tests' coroutines are lambdas, which inherit no access
         };
         device = std::make_unique<Device>(
             context.get_executor(),
-            Port{open, std::move(wait)},
+            Port{open, std::move(wait), std::move(is_it)},
             options,
             *this,
             log
@@ -586,6 +587,21 @@ TEST_F(DeviceTest, APortThatIsNotThereIsAwaited) {
         EXPECT_EQ(test.device->state().recoveries, 1U);
     }(*this));
     EXPECT_EQ(std::ranges::count(phases, Phase::absent), 1) << "looking again in vain is no news";
+}
+
+TEST_F(DeviceTest, ALidarThatIsNotTheOneToHaveIsLeftAlone) {
+    int met = 0;
+    make_device({.recovery = at_once}, {}, [&met](const protocol::DeviceInfo&) {
+        return ++met == 3;
+    });
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::backing_off);
+        EXPECT_EQ(test.device->state().cause, "another lidar is on the port");
+        EXPECT_FALSE(test.device->state().info);
+        co_await test.until_phase(Phase::scanning);
+    }(*this));
+    EXPECT_EQ(met, 3);
+    EXPECT_EQ(opened, 3);
 }
 
 TEST_F(DeviceTest, SaysWhenItIsTriedAgain) {

@@ -1,0 +1,140 @@
+// Lidars that are pulled out and come back: on the same port, on another one, on each other's.
+#include "tests/e2e/gateway.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sweepcast::test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* serial_a = "A0A0A0A0000000000000000000000001";
+constexpr const char* serial_b = "B0B0B0B0000000000000000000000002";
+
+class PortMoves : public testing::Test {
+protected:
+    using Lidar = std::unique_ptr<VirtualLidarProcess>;
+
+    /// Plugs a lidar in. Destroyed, it is killed, as if pulled out: its port goes, the link
+    /// dangles.
+    Lidar plug(const std::string& link, const std::string& serial) {
+        return std::make_unique<VirtualLidarProcess>(
+            std::vector<std::string>{"--link", scratch.file(link), "--serial", serial}
+        );
+    }
+    /// Waits until the lidar of that id scans at that port.
+    static v1::Lidar wait_for(Subscriber& client, const std::string& id, const std::string& url) {
+        return client
+            .next([&](const auto& message) {
+                return message.lidar().id() == id && message.lidar().url() == url &&
+                       message.lidar().state() == v1::Lidar::SCANNING;
+            })
+            .lidar();
+    }
+
+    ScratchDirectory scratch;
+};
+
+TEST_F(PortMoves, ALidarThatComesBackOnItsPortGoesOn) {
+    auto lidar = plug("one", serial_a);
+    GatewayProcess gateway({"--lidar", scratch.file("one")});
+    Subscriber client("tcp://" + gateway.tcp);
+    client.subscribe();
+    wait_for(client, "A0A0A0A0", scratch.file("one"));
+    const auto before = client.next_sweep().sequence;
+    lidar.reset();
+    client.next([](const auto& message) {
+        return message.has_lidar() && message.lidar().state() != v1::Lidar::SCANNING;
+    });
+    lidar = plug("one", serial_a);
+    wait_for(client, "A0A0A0A0", scratch.file("one"));
+    EXPECT_GT(client.next_sweep().sequence, before);
+}
+
+TEST_F(PortMoves, ALidarThatComesBackOnAnotherPortIsFoundThere) {
+    auto lidar = plug("one", serial_a);
+    GatewayProcess gateway(
+        {"--lidar", scratch.file("one") + "?name=front", "--discover", scratch.file("*")}
+    );
+    Subscriber client("tcp://" + gateway.tcp);
+    client.subscribe();
+    wait_for(client, "front", scratch.file("one") + "?name=front");
+    const auto before = client.next_sweep().sequence;
+    lidar.reset();
+    const auto stranger = plug("two", serial_b);
+    lidar = plug("three", serial_a);
+    const auto found = wait_for(client, "front", scratch.file("three") + "?name=front");
+    EXPECT_EQ(found.device().serial_number(), serial_a);
+    const auto after = client.next_sweep();
+    EXPECT_GT(after.sequence, before);
+    EXPECT_EQ(after.lidar, "front");
+}
+
+TEST_F(PortMoves, LidarsThatSwapTheirPortsKeepTheirNames) {
+    auto a = plug("one", serial_a);
+    auto b = plug("two", serial_b);
+    GatewayProcess gateway(
+        {"--lidar", scratch.file("one"), "--lidar", scratch.file("two") + "?name=back"}
+    );
+    Subscriber client("tcp://" + gateway.tcp);
+    client.subscribe();
+    std::vector<std::string> scanning;
+    while (scanning.size() < 2) {
+        scanning.push_back(client.wait_for_state(v1::Lidar::SCANNING).id());
+    }
+    EXPECT_THAT(scanning, testing::UnorderedElementsAre("A0A0A0A0", "back"));
+    a.reset();
+    b.reset();
+    b = plug("one", serial_b);
+    a = plug("two", serial_a);
+    std::vector<v1::Lidar> moved;
+    while (moved.size() < 2) {
+        moved.push_back(client
+                            .next([&](const auto& message) {
+                                const auto& lidar = message.lidar();
+                                return lidar.state() == v1::Lidar::SCANNING &&
+                                       lidar.url() != scratch.file("one") &&
+                                       lidar.url() != scratch.file("two") + "?name=back" &&
+                                       (moved.empty() || moved.front().id() != lidar.id());
+                            })
+                            .lidar());
+    }
+    for (const auto& lidar : moved) {
+        const bool is_a = lidar.id() == "A0A0A0A0";
+        EXPECT_EQ(lidar.device().serial_number(), is_a ? serial_a : serial_b);
+        EXPECT_EQ(lidar.url(), is_a ? scratch.file("two") : scratch.file("one") + "?name=back");
+    }
+}
+
+TEST_F(PortMoves, AnotherLidarTakesThePlaceOfOneThatIsNowhere) {
+    auto lidar = plug("one", serial_a);
+    GatewayProcess gateway({"--lidar", scratch.file("one")});
+    Subscriber client("tcp://" + gateway.tcp);
+    client.subscribe();
+    wait_for(client, "A0A0A0A0", scratch.file("one"));
+    lidar.reset();
+    lidar = plug("one", serial_b);
+    gateway.process.wait_for_log("lidar B0B0B0B0 is there, and not A0A0A0A0");
+    gateway.process.wait_for_log("lidar B0B0B0B0 takes the place of A0A0A0A0");
+    wait_for(client, "B0B0B0B0", scratch.file("one"));
+}
+
+TEST_F(PortMoves, AnotherLidarOnThePortDoesNotTakeThePlaceOfOneThatIsElsewhere) {
+    auto lidar = plug("one", serial_a);
+    GatewayProcess gateway({"--lidar", scratch.file("one"), "--discover", scratch.file("*")});
+    Subscriber client("tcp://" + gateway.tcp);
+    client.subscribe();
+    wait_for(client, "A0A0A0A0", scratch.file("one"));
+    lidar.reset();
+    const auto stranger = plug("one", serial_b);
+    lidar = plug("two", serial_a);
+    wait_for(client, "A0A0A0A0", scratch.file("two"));
+}
+
+}  // namespace
+}  // namespace sweepcast::test
