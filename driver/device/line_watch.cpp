@@ -26,19 +26,30 @@ void LineWatch::take(
     const auto came = static_cast<double>(line.samples - first.samples);
     const double share = lost > 0 ? lost / (lost + came) : 0;
     if (share > worst && damages >= least_damages) {
-        warning_ = fmt::format(
-            "the line loses {:.0f} % of the samples: check cable, plug, power and what runs beside "
-            "them; a USB hub or a long cable may be too much for it",
-            share * 100.0
-        );
+        warn(share);
     } else if (share < fine && now - first.at > window - 2 * step) {
         warning_.clear();
+        told_ = 0;
     }
+}
+
+void LineWatch::warn(double share) {
+    for (const double step : {worst, 0.03, 0.1, 0.3}) {
+        if (share > step && step > told_) {
+            told_ = step;
+        }
+    }
+    warning_ = fmt::format(
+        "the line loses more than {:.0f} % of the samples: check cable, plug, power and what runs "
+        "beside them; a USB hub or a long cable may be too much for it",
+        told_ * 100.0
+    );
 }
 
 void LineWatch::restart() {
     seen_.clear();
     warning_.clear();
+    told_ = 0;
 }
 
 }  // namespace sweepcast::device

@@ -28,7 +28,8 @@ public:
         std::chrono::steady_clock::time_point now
     );
 
-    /// What is wrong and what to do, as long as the line is degraded; else empty.
+    /// What is wrong and what to do, as long as the line is degraded; else empty. How bad it is is
+    /// told in steps, the worst so far, so that it is not news over and over.
     [[nodiscard]] const std::string& warning() const { return warning_; }
 
     /// Forgets what it saw: another line, or another scan.
@@ -42,7 +43,10 @@ private:
         std::uint64_t lost_samples;
     };
 
+    void warn(double share);
+
     std::deque<Totals> seen_;
+    double told_{};  ///< the step that the warning tells
     std::string warning_;
 };
 

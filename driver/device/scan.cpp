@@ -96,6 +96,9 @@ asio::awaitable<Result<void>> Scan::read_stream(protocol::AnswerType type) {
             co_return bytes.error();
         }
         const auto now = Clock::now();
+        if (now >= samples_due_) {  // it is us who were held up: the turns are on the line
+            turn_due_ = std::max(turn_due_, now + turn_limit);
+        }
         finished.clear();
         const auto arrival = std::chrono::time_point_cast<std::chrono::microseconds>(now);
         const auto samples = reader->push(*bytes, arrival, finished);

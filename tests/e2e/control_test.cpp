@@ -128,6 +128,23 @@ TEST(Control, ALidarThatVanishesIsReportedAndTakenAgain) {
     EXPECT_EQ(client.wait_for_state(v1::Lidar::SCANNING).recoveries(), 1U);
 }
 
+TEST(Control, AGatewayThatWasHeldUpTakesItForNoFaultOfTheLidar) {
+    VirtualLidarProcess lidar({"--model", "s2"});
+    GatewayProcess gateway({"--lidar", lidar.port});
+    Subscriber client("tcp://" + gateway.tcp);
+    client.subscribe();
+    client.next_sweep();
+    gateway.process.signal(SIGSTOP);
+    for (int second = 0; second < 3; ++second) {  // it says so once a second
+        lidar.process.wait_for_log("the host does not read");
+    }
+    gateway.process.signal(SIGCONT);
+    for (int sweep = 0; sweep < 20; ++sweep) {
+        client.next_sweep();
+    }
+    EXPECT_THAT(http(gateway.http, "GET", "/api/v1/lidars").body, HasSubstr("\"recoveries\": 0"));
+}
+
 TEST(Control, AMotorRestsWhileNobodyWatchesAndTurnsForTheFirstWhoDoes) {
     VirtualLidarProcess lidar;
     GatewayProcess gateway({"--lidar", lidar.port + "?name=mine&motor_off_after=1"});

@@ -35,8 +35,15 @@ TEST_F(LineWatchTest, AGoodLineIsNotWarnedOf) {
 
 TEST_F(LineWatchTest, ALineThatLosesMoreThanOnePartInAHundredIsDegraded) {
     pass(10s, 3);
-    EXPECT_THAT(watch.warning(), HasSubstr("loses 3 %"));
+    EXPECT_THAT(watch.warning(), HasSubstr("loses more than 1 %"));
     EXPECT_THAT(watch.warning(), HasSubstr("cable"));
+}
+
+TEST_F(LineWatchTest, HowBadItIsIsToldInStepsAndTheWorstStands) {
+    pass(10s, 5);
+    EXPECT_THAT(watch.warning(), HasSubstr("more than 3 %"));
+    pass(10s, 2);
+    EXPECT_THAT(watch.warning(), HasSubstr("more than 3 %"));
 }
 
 TEST_F(LineWatchTest, ALineThatLosesLittleIsNot) {
