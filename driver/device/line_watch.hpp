@@ -37,10 +37,10 @@ public:
 
 private:
     struct Totals {
-        std::chrono::steady_clock::time_point at;
-        std::uint64_t samples;
-        std::uint64_t damages;
-        std::uint64_t lost_samples;
+        std::chrono::steady_clock::time_point at{};
+        std::uint64_t samples{};
+        std::uint64_t damages{};
+        std::uint64_t lost_samples{};
     };
 
     void warn(double share);

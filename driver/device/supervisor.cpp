@@ -44,6 +44,9 @@ bool Supervisor::on(Event event, const Problem& why, Moment now) {
         life_.hint = why.hint;
     }
     life_.next_attempt.reset();
+    if (life_.phase == Phase::absent && event == Event::opened) {
+        failures_ = 0;  // plugged in: what failed before has an end
+    }
     const bool changed = *phase != life_.phase;
     if (changed) {
         enter(*phase, why, now);

@@ -136,6 +136,17 @@ TEST_F(SupervisorTest, ForgivesWhatFailedOnceItHasBeenWellForAWhile) {
     EXPECT_LE(fail(), 200ms);
 }
 
+TEST_F(SupervisorTest, ForgivesWhatFailedWhenThePortHasComeBack) {
+    on(Event::attempt);
+    for (int i = 0; i < 5; ++i) {
+        fail();
+        on(Event::attempt);
+    }
+    on(Event::no_port, "no such port");
+    on(Event::opened);
+    EXPECT_LE(fail(), 200ms);
+}
+
 TEST_F(SupervisorTest, ResetsAreRationed) {
     EXPECT_TRUE(supervisor.take_reset(now));
     pass(1min);
