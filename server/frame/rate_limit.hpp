@@ -16,8 +16,13 @@ public:
     /// On average `interval` from one to the next; 0: no limit.
     explicit RateLimit(std::chrono::microseconds interval) : interval_(interval) {}
 
-    /// Whether the sweep that begins then, and takes so long, goes out. Times only grow.
+    /// Whether the sweep that begins then, and takes so long, goes out. Times grow, but for a lidar
+    /// that was faster than it said (it flooded its line) and is begun anew: it counts from there.
     bool lets_pass(protocol::SampleTime begin, std::chrono::microseconds period) {
+        if (begin < last_) {
+            due_.reset();
+        }
+        last_ = begin;
         if (due_ && begin < *due_ - std::min(interval_, period) / 4) {
             return false;
         }
@@ -29,6 +34,7 @@ public:
 
 private:
     std::chrono::microseconds interval_;
+    protocol::SampleTime last_{};
     std::optional<protocol::SampleTime> due_;
 };
 

@@ -62,5 +62,14 @@ TEST(RateLimit, DoesNotMakeUpForAPause) {
     EXPECT_TRUE(limit.lets_pass(protocol::SampleTime(100s + 200ms), 100ms));
 }
 
+TEST(RateLimit, CountsAnewWhenTimesGoBack) {
+    for (const auto interval : {0ms, 200ms}) {
+        RateLimit limit(interval);
+        EXPECT_TRUE(limit.lets_pass(protocol::SampleTime(100s), 100ms));
+        EXPECT_TRUE(limit.lets_pass(protocol::SampleTime(50s), 100ms));
+        EXPECT_TRUE(limit.lets_pass(protocol::SampleTime(50s + 200ms), 100ms));
+    }
+}
+
 }  // namespace
 }  // namespace sweepcast::frame
