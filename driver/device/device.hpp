@@ -181,6 +181,7 @@ private:
     settle(std::function<bool()> reached, std::chrono::milliseconds limit);
 
     void on_first_samples() override;
+    void on_silence(bool over) override;
     void on_revolution(protocol::Sweep sweep, protocol::AnswerType type) override;
     void on_progress(
         const protocol::UnfinishedSweep& sweep,

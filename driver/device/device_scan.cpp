@@ -83,6 +83,14 @@ void Device::on_first_samples() {
     happened(Event::samples, mode_problem());
 }
 
+void Device::on_silence(bool over) {
+    if (over) {
+        happened(Event::samples, mode_problem());
+    } else {
+        happened(Event::stall, advice(errc::stream_silent));
+    }
+}
+
 void Device::on_revolution(protocol::Sweep sweep, protocol::AnswerType type) {
     restarts_ = 0;
     line_watch_.take(state_.line, protocol::samples_per_packet(type), Clock::now());

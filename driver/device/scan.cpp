@@ -26,6 +26,9 @@ constexpr auto spin_up_limit = 6s;
 constexpr auto shortest_silence = 300ms;
 constexpr auto network_silence = 1000ms;
 constexpr int packets_of_silence = 3;
+/// A silent line is listened to for so much longer: most hiccups end by themselves, and a scan that
+/// is begun again costs more.
+constexpr auto patience_with_silence = 600ms;
 /// The slowest lidars turn twice a second; one whose speed is known misses so many turns.
 constexpr auto turn_limit = 3s;
 constexpr auto shortest_turn_limit = 1s;
@@ -90,8 +93,15 @@ asio::awaitable<Result<void>> Scan::read_stream(protocol::AnswerType type) {
     const auto silence_limit = silence_after(type);
     std::vector<protocol::Sweep> finished;
     bool begun = false;
+    bool silent = false;
     for (;;) {
         const auto bytes = co_await talk_.read(samples_due_);
+        if (!bytes && bytes.error() == link::errc::timed_out && begun && !silent) {
+            silent = true;
+            samples_due_ = Clock::now() + patience_with_silence;
+            observer_.on_silence(false);
+            continue;
+        }
         if (!bytes) {
             co_return bytes.error();
         }
@@ -111,6 +121,10 @@ asio::awaitable<Result<void>> Scan::read_stream(protocol::AnswerType type) {
             samples_due_ = now + silence_limit;
             turn_due_ = now + turn_limit;  // from here on a stopped motor shows
             observer_.on_first_samples();
+        }
+        if (samples > 0 && std::exchange(silent, false)) {
+            samples_due_ = now + silence_limit;
+            observer_.on_silence(true);
         }
         if (!finished.empty()) {
             turn_due_ = std::max(turn_due_, now + next_turn_limit(finished.back().period));

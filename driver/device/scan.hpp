@@ -21,6 +21,9 @@ public:
     virtual ~ScanObserver() = default;
     /// Samples have begun to come in.
     virtual void on_first_samples() = 0;
+    /// No samples have come for so long that something is wrong, but the scan is not given up yet;
+    /// or that is `over`: they come again.
+    virtual void on_silence(bool /*over*/) {}
     /// A complete revolution, as the stream's descriptor has it.
     virtual void on_revolution(protocol::Sweep sweep, protocol::AnswerType type) = 0;
     /// The revolution under way, after bytes that arrived then have brought samples and what they

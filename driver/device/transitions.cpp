@@ -45,10 +45,13 @@ constexpr std::array table{
     Transition{failed, Event::start, starting},
 
     Transition{starting, Event::samples, scanning},
+    Transition{stalled, Event::samples, scanning},  // a hiccup
     Transition{starting, Event::stop, stopping},
     Transition{scanning, Event::stop, stopping},
+    Transition{stalled, Event::stop, stopping},
     Transition{starting, Event::stall, stalled},
     Transition{scanning, Event::stall, stalled},
+    Transition{stalled, Event::stall, stalled},
 
     Transition{identifying, Event::protect, protection_stop},
     Transition{idle, Event::protect, protection_stop},

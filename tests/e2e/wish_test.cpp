@@ -54,7 +54,7 @@ TEST(Wish, SectorsAddUpToTheSweepsThatOthersGet) {
             if (!frame.last()) {
                 continue;
             }
-            EXPECT_GT(frame.sector(), 3U);
+            EXPECT_GT(frame.sector(), 0U);
             if (const auto same = sweeps.find(frame.sequence()); same != sweeps.end()) {
                 EXPECT_EQ(joined, same->second) << wish;
                 ++compared;

@@ -15,6 +15,8 @@ export interface Measured {
   missed: number;
 }
 
+const HICCUP_MS = 1500;
+
 export class Panel {
   private readonly state = element("state", HTMLElement);
   private readonly mark = new Mark("rest");
@@ -36,6 +38,7 @@ export class Panel {
     baud: element("baud", HTMLElement),
   };
   private readonly line = new LinePanel();
+  private troubleSeen: number | undefined;
 
   constructor() {
     this.state.prepend(this.mark.element);
@@ -51,8 +54,7 @@ export class Panel {
     this.state.dataset["tone"] = tone;
     this.mark.show(tone);
     setText(this.word, known || !connected ? word : "No lidar");
-    showText(this.cause, known?.cause ?? (connected ? "The gateway knows of no lidar." : ""));
-    showText(this.hint, known?.hint ?? "");
+    this.showCause(known, connected);
     this.virtualNote.hidden = !lidar?.isVirtual;
     setText(this.virtualWords, virtualWords(lidar));
     setText(this.values.model, lidar?.device?.model || NONE);
@@ -61,6 +63,21 @@ export class Panel {
     setText(this.values.port, lidar?.url || NONE);
     setText(this.values.baud, baudWords(lidar?.line));
     this.line.show(lidar?.line);
+  }
+
+  // A hiccup is over before it could be read, and what it pushes about would only distract.
+  private showCause(known: Lidar | undefined, connected: boolean): void {
+    const passing = known?.state === Lidar_State.STALLED || known?.state === Lidar_State.STARTING;
+    if (!known || !inTrouble(known)) this.troubleSeen = undefined;
+    else this.troubleSeen ??= performance.now();
+    const fresh =
+      this.troubleSeen !== undefined && performance.now() - this.troubleSeen < HICCUP_MS;
+    const shown = passing && fresh ? undefined : known;
+    showText(
+      this.cause,
+      known ? (shown?.cause ?? "") : connected ? "The gateway knows of no lidar." : "",
+    );
+    showText(this.hint, shown?.hint ?? "");
   }
 
   /// How long the state, or the trouble, has lasted, and when the next attempt is, by this device's clock, which

@@ -556,6 +556,19 @@ TEST_F(DeviceTest, AStalledScanIsBegunAgainOnTheSameConnection) {
     EXPECT_EQ(opened, 1);
 }
 
+TEST_F(DeviceTest, AHiccupOfTheLineIsToldAndCostsNothing) {
+    make_device({.recovery = not_again});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);
+        co_await test.until_phase(Phase::stalled);  // the fake sends three turns and falls silent
+        for (unsigned degree = 0; degree < 10; ++degree) {
+            test.scanner.send_sample(degree);
+        }
+        co_await test.until_phase(Phase::scanning);
+    }(*this));
+    EXPECT_EQ(scanner.count(Command::express_scan), 1U);
+}
+
 TEST_F(DeviceTest, AScanThatStallsMoreOftenThanItMayHasThePortOpenedAnew) {
     make_device({.recovery = {.attempts = {1ms, 1ms}, .restarts = 0}});
     play([](DeviceTest& test) -> asio::awaitable<void> {
