@@ -258,7 +258,7 @@ std::vector<std::uint32_t> Device::bauds() const {
 asio::awaitable<Result<void>> Device::next_step(Conversation& talk) {
     if (wanted_.reset) {
         supervisor_.refill_resets();
-        const Problem told{{}, "told to", ""};
+        const Problem told{{}, "its user resets it", ""};
         const auto rebooted = co_await reboot(talk, told);
         wanted_.reset = wanted_.reset && !rebooted;
         co_return rebooted;
