@@ -278,8 +278,13 @@ asio::awaitable<Result<void>> Device::rest(Conversation& talk) {
     if (!off) {
         co_return off;
     }
-    happened(Event::rest, wanted_.scanning ? unwatched() : mode_problem());
+    tell_rest();
     co_return co_await watch_health(talk);
+}
+
+/// Tells that the motor is off and why: nobody watches, or its user wants it so.
+void Device::tell_rest() {
+    happened(Event::rest, wanted_.scanning ? unwatched() : mode_problem());
 }
 
 /// Waits until the lidar's health changes. Asks now and then whether it is still there and well:

@@ -194,6 +194,7 @@ private:
     void report_scan();
     bool tell_warning(std::string& told, const std::string& warning);
     void happened(Event event, const Problem& why = {});
+    void tell_rest();
     void tell_state();
     void tell_failure(const Problem& problem, std::string_view next);
     void poke();

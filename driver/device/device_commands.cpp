@@ -36,6 +36,9 @@ asio::awaitable<Result<void, Problem>> Device::start(std::string mode) {
     }
     if (!std::exchange(wanted_.scanning, true) || other_mode) {
         ++wanted_.command;
+        if (state_.phase == Phase::idle && !wanted_.in_demand) {  // stays so, for another reason
+            tell_rest();
+        }
     }
     const auto lacks_mode = [this] { return !state_.modes.empty() && wanted_mode() == nullptr; };
     const auto settled = co_await settle(
@@ -102,6 +105,9 @@ void Device::set_demand(bool demand) {
 asio::awaitable<Result<void, Problem>> Device::stop() {
     if (std::exchange(wanted_.scanning, false)) {
         ++wanted_.command;
+        if (state_.phase == Phase::idle) {  // stays so, for another reason
+            tell_rest();
+        }
     }
     co_return co_await settle(
         [this] {

@@ -159,6 +159,7 @@ TEST(Control, AMotorRestsWhileNobodyWatchesAndTurnsForTheFirstWhoDoes) {
         << "it is to scan already";
     Subscriber client("tcp://" + gateway.tcp);
     client.subscribe();
+    client.wait_for_state(v1::Lidar::SCANNING);
     client.next_sweep();
     EXPECT_EQ(http(gateway.http, "POST", "/api/v1/lidars/mine/stop").status, 200);
     EXPECT_EQ(client.wait_for_state(v1::Lidar::IDLE).cause(), "") << "its user stopped it";

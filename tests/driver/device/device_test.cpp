@@ -290,6 +290,23 @@ TEST_F(DeviceTest, StopAndStartFollowEachOther) {
     EXPECT_EQ(scanner.count(Command::express_scan), 2U);
 }
 
+TEST_F(DeviceTest, SaysWhyItRestsThoughNobodyWatchesAnyway) {
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);
+        test.device->set_demand(false);
+        co_await test.until_phase(Phase::idle);
+        EXPECT_THAT(test.device->state().cause, HasSubstr("nobody watches"));
+        EXPECT_TRUE(co_await test.device->stop());
+        EXPECT_EQ(test.device->state().cause, "") << "its user stopped it";
+        EXPECT_TRUE(co_await test.device->start(""));
+        EXPECT_THAT(test.device->state().cause, HasSubstr("nobody watches"));
+        test.device->set_demand(true);
+        co_await test.until_phase(Phase::scanning);
+        EXPECT_EQ(test.device->state().cause, "");
+    }(*this));
+}
+
 TEST_F(DeviceTest, ChangesTheModeOfARunningScan) {
     make_device();
     play([](DeviceTest& test) -> asio::awaitable<void> {
@@ -567,6 +584,28 @@ TEST_F(DeviceTest, AHiccupOfTheLineIsToldAndCostsNothing) {
         co_await test.until_phase(Phase::scanning);
     }(*this));
     EXPECT_EQ(scanner.count(Command::express_scan), 1U);
+}
+
+TEST_F(DeviceTest, AGatewayThatIsHeldUpTakesItForNoFaultOfTheLidar) {
+    make_device({.recovery = not_again});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);
+        const auto complete = test.sweeps.size();
+        for (unsigned degree = 0; degree < 10; ++degree) {
+            test.scanner.send_sample(degree);
+        }
+        co_await test.until([&test, complete] { return test.sweeps.size() > complete; });
+        const auto before = test.device->state().line.samples;
+        // The thread is held up, longer than a silence or a turn may last.
+        const auto goes_on_at = std::chrono::steady_clock::now() + 3500ms;
+        while (std::chrono::steady_clock::now() < goes_on_at) {
+        }
+        for (unsigned degree = 10; degree < 20; ++degree) {  // what came meanwhile
+            test.scanner.send_sample(degree);
+        }
+        co_await test.until([&test, before] { return test.device->state().line.samples > before; });
+    }(*this));
+    EXPECT_THAT(phases, testing::Not(Contains(Phase::stalled)));
 }
 
 TEST_F(DeviceTest, AScanThatStallsMoreOftenThanItMayHasThePortOpenedAnew) {
