@@ -99,7 +99,9 @@ Result<PortLink, Problem> PortLink::create(std::string path, std::string port) {
         return unavailable(
             path,
             "is a link to " + target.string() + ", which is in use",
-            "stop the virtual lidar that made it, or choose another path for the link"
+            "stop the virtual lidar that made it; if it is gone already, remove the link, or "
+            "choose "
+            "another path for it"
         );
     }
     failure = replace(path, port);

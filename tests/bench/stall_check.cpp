@@ -94,7 +94,8 @@ int run(unsigned seconds, std::uint32_t count, std::uint32_t stalled) {
     }
     const auto before = resident_bytes();
     check.publish(seconds);
-    const auto grown = resident_bytes() - std::min(before, resident_bytes());
+    const auto after = resident_bytes();
+    const auto grown = after - std::min(before, after);
     check.expect(
         grown < most_growth,
         fmt::format("memory grew by {} kB in {} s of stall", grown / 1024, seconds)
