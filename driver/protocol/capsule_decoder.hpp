@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 
 namespace sweepcast::protocol {
 
@@ -46,7 +47,12 @@ struct FinishedCapsule {
 ///    than one packet is believed only if a capsule's sync nibbles followed it directly, else its
 ///    own tail may be missing;
 ///  - a packet lost without a trace shows as a sudden multiple of the steady rate and is treated
-///    likewise, where the vendor stretches the capsule before it over the gap.
+///    likewise, where the vendor stretches the capsule before it over the gap;
+///  - after a pause in which the scanner may have turned by half a turn or more, or during which
+///  the
+///    rate was not steady, nobody knows how far it turned: the capsule before the pause is given
+///    up. It is no pause if what was sent meanwhile came together, late, or if the capsule before
+///    came after a pause, too: then the scanner is slower than it says.
 ///
 /// `Format` says what the bytes of an answer type mean:
 ///  - `type`, `samples_per_capsule`, `start_word_at`;
@@ -62,7 +68,12 @@ public:
 
     /// Appends to `out` what `bytes` complete.
     void push(std::span<const std::uint8_t> bytes, const Arrival& arrival, Decoded& out) {
-        backlog_.feed(bytes, arrival, [&](const TimedBytes& input) { return step(input, out); });
+        waiting_ += bytes.size();
+        backlog_.feed(bytes, arrival, [&](const TimedBytes& input) {
+            const auto used = step(input, out);
+            waiting_ -= used;
+            return used;
+        });
     }
 
 private:
@@ -79,7 +90,9 @@ private:
     std::size_t search(CapsuleBytes bytes, Decoded& out);
     void accept(CapsuleBytes bytes, SampleTime arrival, Decoded& out);
     void restart(Decoded& out);
-    void finish_held(CapsuleBytes next, AngleQ6 next_start, Decoded& out);
+    void finish_held(CapsuleBytes next, AngleQ6 next_start, SampleTime arrival, Decoded& out);
+    [[nodiscard]] std::int64_t pause_before(SampleTime arrival) const;
+    [[nodiscard]] bool hides_turns(std::int64_t pause, std::int32_t turned);
     void decode_held(std::int32_t turned_q8, CapsuleBytes next, bool next_follows, Decoded& out);
 
     SampleTiming timing_;
@@ -89,6 +102,8 @@ private:
     TurnRate rate_;
     std::optional<Held> held_;
     std::optional<LineDamage> damage_;
+    std::size_t waiting_{};  ///< bytes that came and were not dealt with
+    bool paused_{};          ///< before the capsule held
 };
 
 /// Deals with the capsule or the noise at the front of `input`.
@@ -142,9 +157,10 @@ void CapsuleDecoder<Format>::accept(CapsuleBytes bytes, SampleTime arrival, Deco
         restart(out);
     }
     if (held_) {
-        finish_held(bytes, start.angle(), out);
+        finish_held(bytes, start.angle(), arrival, out);
     } else {
         held_.emplace();
+        paused_ = false;
     }
     damage_.reset();
     std::copy(bytes.begin(), bytes.end(), held_->bytes.begin());
@@ -166,8 +182,19 @@ void CapsuleDecoder<Format>::restart(Decoded& out) {
 /// Decodes the capsule held, now that the next one is known, if its share of the turn between is
 /// sure.
 template <class Format>
-void CapsuleDecoder<Format>::finish_held(CapsuleBytes next, AngleQ6 next_start, Decoded& out) {
+void CapsuleDecoder<Format>::finish_held(
+    CapsuleBytes next,
+    AngleQ6 next_start,
+    SampleTime arrival,
+    Decoded& out
+) {
     const auto turned = turned_q8(held_->start, next_start);
+    if (hides_turns(pause_before(arrival), turned)) {
+        // At least this one; of how long the pause was, the times of what follows tell.
+        out.events.push_back({out.samples.size(), DecodeEventKind::packets_lost});
+        rate_.forget();  // meanwhile, the speed may have become another
+        return;
+    }
     const auto times = damage_ ? rate_.packet_times(turned) : rate_.learn(turned);
     if (!times) {
         return;
@@ -180,6 +207,32 @@ void CapsuleDecoder<Format>::finish_held(CapsuleBytes next, AngleQ6 next_start, 
         const auto lost = static_cast<std::size_t>(*times - 1 - told);
         out.events.push_back({out.samples.size(), DecodeEventKind::packets_lost, lost});
     }
+}
+
+/// How many packets did not come between the one held and the one that is here since `arrival`, by
+/// the time between the two: the nearest whole number, 0 if the time of a packet is not known. What
+/// came together with it was on its way meanwhile.
+template <class Format>
+std::int64_t CapsuleDecoder<Format>::pause_before(SampleTime arrival) const {
+    const auto packet_time = timing_.sample_duration() * std::int64_t{Format::samples_per_capsule};
+    if (packet_time.count() <= 0) {
+        return 0;
+    }
+    const auto times = (arrival - held_->arrival + packet_time / 2) / packet_time;
+    const auto came_together = static_cast<std::int64_t>(waiting_ / capsule_size);
+    return std::max<std::int64_t>(times - came_together, 0);
+}
+
+/// Whether a pause of so many packets makes it unknown by how much the scanner turned meanwhile: by
+/// `turned`, or by that and any number of whole turns.
+template <class Format>
+bool CapsuleDecoder<Format>::hides_turns(std::int64_t pause, std::int32_t turned) {
+    const bool follows_another = std::exchange(paused_, pause > 0);
+    if (!paused_ || follows_another) {
+        return false;
+    }
+    const auto times = rate_.packet_times(turned);
+    return !times || (pause + 1) * turned / *times >= turn_q8 / 2;
 }
 
 template <class Format>
