@@ -18,18 +18,19 @@ constexpr double rounding = 10e3;
 constexpr double doubt_lasts = 400 * ms;
 /// Later than any adapter delivers.
 constexpr double longest_delay = 40 * ms;
-/// More than the buffers of lines and hosts hold back.
+/// More than a line holds back; a host that is held up may have more waiting.
 constexpr double longest_backlog = 300 * ms;
 /// How long bytes have to stay late until they are not: longer than it takes to catch up, for a
-/// host that was not scheduled or a lidar behind a full line; or, beyond any backlog, for the next
-/// packet.
+/// lidar behind a full line; or, beyond any backlog of a line, for a host that reads what waited.
 constexpr double backlog_read = 300 * ms;
-constexpr double pause_sure = 5 * ms;
+constexpr double pause_sure = 20 * ms;
 constexpr double epoch = 2000 * ms;
 /// A step forward by more is made at once, as something is missing.
 constexpr double greatest_bend = 1 * ms;
-/// Corrections are spread over sixteen times as long, at least this.
+/// Corrections are spread over sixteen times as long, at least this; back from what was taken for a
+/// pause and was none, over twice as long: times in the future are worse than uneven ones.
 constexpr double bend_spread = 16.0;
+constexpr double return_spread = 2.0;
 constexpr double shortest_bend = 100 * ms;
 
 /// The decoder's delay of 0x83 counts a single sample of its packets, as the vendor's does.
@@ -194,7 +195,8 @@ void SampleClock::aim(double count) {
     if (behind > greatest_bend) {
         corner_time_ = line.at(count);
     } else if (line.step > 0.0) {
-        const auto spread = std::max(bend_spread * std::abs(behind), shortest_bend) / line.step;
+        const auto times_as_long = behind < -longest_delay ? return_spread : bend_spread;
+        const auto spread = std::max(times_as_long * std::abs(behind), shortest_bend) / line.step;
         step_ = line.step + behind / spread;
         bend_count_ = count + spread;
     }

@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(
         Stream{"a1m8", AnswerType::express, 900},
         Stream{"s3", AnswerType::hq, 4300},
         Stream{"a2m12", AnswerType::ultra, 1000},
-        Stream{"s2", AnswerType::dense, 600},
+        Stream{"s2", AnswerType::dense, 900},
         Stream{"c1", AnswerType::ultra_dense, 11000}
     ),
     [](const auto& stream) {

@@ -102,7 +102,7 @@ TEST_F(SampleClockTest, APauseIsAGap) {
     start += 3s;
     EXPECT_LE(packet(), uncertainty) << "it may just be late";
     EXPECT_GE(uncertainty, 3s);
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < 50; ++i) {
         packet();
     }
     EXPECT_LE(std::chrono::abs(packet()), 100us);
@@ -112,6 +112,27 @@ TEST_F(SampleClockTest, AHostThatWasNotScheduledIsNoGap) {
     settle();
     for (int i = 80; i > 0; --i) {  // read one by one, all at the same time
         EXPECT_LE(std::chrono::abs(packet(i * 1250us)), 100us);
+    }
+    EXPECT_LE(std::chrono::abs(packet()), 100us);
+}
+
+TEST_F(SampleClockTest, AHostThatWasHeldUpForSecondsAndReadsWhatWaitedIsNoGap) {
+    settle();
+    constexpr int waited = 2400;  // three seconds, read within 12 ms
+    for (int i = waited; i > 0; --i) {
+        EXPECT_LE(std::chrono::abs(packet(i * 1245us)), 100us);
+    }
+    EXPECT_LE(std::chrono::abs(packet()), 100us);
+}
+
+TEST_F(SampleClockTest, WhatWasTakenForAPauseAndWasNoneIsMadeGoodSoon) {
+    settle();
+    for (int i = 0; i < 80; ++i) {  // a tenth of a second of nothing but late ones
+        packet(3s);
+    }
+    EXPECT_GT(packet(3s), 2s) << "so it was a pause";
+    for (int i = 0; i < 5000; ++i) {  // and now all is in time
+        packet();
     }
     EXPECT_LE(std::chrono::abs(packet()), 100us);
 }
