@@ -1,6 +1,6 @@
 // How long a scan is away: after the gateway was killed in mid-scan and started again, and after
 // the lidar was unplugged and plugged in again. Virtual lidars, the real gateway, one TCP client.
-// Usage: recovery_bench [ROUNDS]
+// Usage: recovery_bench [ROUNDS [MODEL...]]
 #include "sweepcast/v1/stream.pb.h"
 #include "tests/e2e/gateway.hpp"
 
@@ -76,6 +76,7 @@ void unplug_lidar(const std::string& model, std::size_t rounds) {
     client->next_sweep();
     std::vector<double> noticed;
     std::vector<double> back;
+    std::vector<double> swept;
     for (std::size_t i = 0; i < rounds; ++i) {
         auto begin = Clock::now();
         lidar.process.signal(SIGUSR1);
@@ -89,14 +90,16 @@ void unplug_lidar(const std::string& model, std::size_t rounds) {
         client->wait_for_state(v1::Lidar::SCANNING);
         back.push_back(ms_since(begin));
         client->next_sweep();
+        swept.push_back(ms_since(begin));
     }
     print(model + ": unplugged, until the gateway says so", std::move(noticed));
     print(model + ": plugged in again, until it scans", std::move(back));
+    print(model + ": ... until a client has a sweep", std::move(swept));
 }
 
-void run(std::size_t rounds) {
+void run(std::size_t rounds, const std::vector<std::string>& models) {
     fmt::print("{:<58} {:>7} {:>7} {:>7}\n", "milliseconds", "least", "median", "most");
-    for (const auto* model : {"a1m8", "c1", "s2"}) {
+    for (const auto& model : models) {
         kill_gateways(model, rounds);
         unplug_lidar(model, rounds);
     }
@@ -107,7 +110,11 @@ void run(std::size_t rounds) {
 
 int main(int argc, char** argv) {
     try {
-        sweepcast::bench::run(argc > 1 ? std::stoul(argv[1]) : 10);
+        std::vector<std::string> models(argv + std::min(argc, 2), argv + argc);
+        if (models.empty()) {
+            models = {"a1m8", "c1", "s2"};
+        }
+        sweepcast::bench::run(argc > 1 ? std::stoul(argv[1]) : 10, models);
     } catch (const std::exception& failure) {
         fmt::print(stderr, "{}\n", failure.what());
         return 1;

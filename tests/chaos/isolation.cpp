@@ -1,0 +1,213 @@
+// Isolation: of several virtual lidars under one gateway one misbehaves in every way in turn. The
+// others must not lose one sample, and HTTP must answer as before: see the help.
+#include "tests/chaos/child.hpp"
+#include "tests/chaos/faults.hpp"
+#include "tests/chaos/watcher.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace sweepcast::chaos {
+namespace {
+
+using namespace std::chrono_literals;
+using Milliseconds = std::chrono::duration<double, std::milli>;
+
+struct Options {
+    std::size_t lidars{8};
+    double fault_s{2};
+};
+
+constexpr std::array models{"a1m8", "c1", "s2", "a3m1"};
+
+/// Asks the gateway for its lidars again and again, in a thread of its own.
+class HttpClient {
+public:
+    explicit HttpClient(std::string address)
+        : address_(std::move(address))
+        , thread_([this] { run(); }) {}
+    ~HttpClient() {
+        stopped_ = true;
+        thread_.join();
+    }
+    HttpClient(const HttpClient&) = delete;
+    HttpClient& operator=(const HttpClient&) = delete;
+
+    /// Ends it; how long each answer took, the quickest first.
+    std::vector<double> finish() {
+        stopped_ = true;
+        thread_.join();
+        thread_ = std::thread([] {});
+        std::ranges::sort(took_ms_);
+        return took_ms_;
+    }
+
+private:
+    void run() {
+        constexpr auto pause = 20ms;
+        while (!stopped_) {
+            const auto begin = Clock::now();
+            const auto answer = test::http(address_, "GET", "/api/v1/lidars");
+            took_ms_.push_back(
+                answer.status == 200 ? Milliseconds(Clock::now() - begin).count() : 1e9
+            );
+            std::this_thread::sleep_until(begin + pause);
+        }
+    }
+
+    std::string address_;
+    std::atomic<bool> stopped_{};
+    std::vector<double> took_ms_;
+    std::thread thread_;
+};
+
+class Isolation {
+public:
+    explicit Isolation(const Options& options) : options_(options) {
+        std::vector<std::string> links;
+        for (std::size_t i = 0; i < options.lidars; ++i) {
+            lidars_.push_back(std::make_unique<Lidar>(scratch_, models.at(i % models.size()), i));
+            links.push_back(lidars_.back()->link());
+        }
+        for (const auto& lidar : lidars_) {
+            lidar->wait_until_ready();
+        }
+        gateway_ = std::make_unique<Gateway>(scratch_, links);
+        watcher_ = std::make_unique<Watcher>(gateway_->tcp(), lidars_);
+        watcher_->set_damaged(0, true);
+    }
+
+    void run() {
+        const auto all_scan = [this] {
+            for (std::size_t i = 0; i < lidars_.size(); ++i) {
+                if (watcher_->seen(i).sweeps < 5) {
+                    return false;
+                }
+            }
+            return true;
+        };
+        if (!watcher_->wait_until(Clock::now() + 30s, all_scan)) {
+            throw std::runtime_error("not all of them scan");
+        }
+        for (std::size_t i = 0; i < lidars_.size(); ++i) {
+            first_.push_back(watcher_->seen(i));
+        }
+        HttpClient http(gateway_->http());
+        for (const auto& fault : faults) {
+            suffer(fault);
+        }
+        // What was measured last is compared by then.
+        watcher_->wait_until(Clock::now() + 6s);
+        check("the end");
+        print(http.finish());
+    }
+
+private:
+    void suffer(const Fault& fault) {
+        const auto lasts = std::chrono::duration_cast<Clock::duration>(
+            std::chrono::duration<double>(options_.fault_s)
+        );
+        (void)lidars_.front()->tell(std::string(fault.command));  // some need a scan that runs
+        watcher_->wait_until(Clock::now() + lasts);
+        if (!fault.ends_with.empty()) {
+            (void)lidars_.front()->tell(std::string(fault.ends_with));
+        }
+        check(fault.command);
+        if (watcher_->seen(0).lidar.state() == v1::Lidar::FAILED) {
+            (void)lidars_.front()->tell("reboot");
+        }
+        watcher_->wait_until(Clock::now() + lasts / 2);
+    }
+
+    /// That the others scan on as if nothing was.
+    void check(std::string_view after) const {
+        for (std::size_t i = 1; i < lidars_.size(); ++i) {
+            const auto seen = watcher_->seen(i);
+            const auto& then = first_[i].lidar;
+            const bool same =
+                seen.skipped == 0 && seen.lidar.state_changes() == then.state_changes() &&
+                seen.lidar.line().checksum_errors() == then.line().checksum_errors() &&
+                seen.lidar.line().lost_packets() == then.line().lost_packets();
+            if (!same) {
+                throw std::runtime_error(fmt::format(
+                    "after {}: {} suffers, too: {} sweeps skipped; {}",
+                    after,
+                    lidars_[i]->link(),
+                    seen.skipped,
+                    seen.lidar.ShortDebugString()
+                ));
+            }
+        }
+        const auto totals = watcher_->totals();
+        if (totals.sweeps_with_holes + totals.sweeps_not_found + totals.dropped > 0) {
+            throw std::runtime_error(fmt::format(
+                "after {}: {} sweeps of the others have holes, {} were not found, {} dropped",
+                after,
+                totals.sweeps_with_holes,
+                totals.sweeps_not_found,
+                totals.dropped
+            ));
+        }
+    }
+
+    void print(const std::vector<double>& took_ms) const {
+        const auto totals = watcher_->totals();
+        fmt::print(
+            "{} lidars, the first of which suffered {} faults: the others' {} sweeps came without "
+            "a "
+            "gap, all {} samples as measured, none lost; HTTP: {} answers, median {:.1f} ms, 99 % "
+            "{:.1f} ms, worst {:.1f} ms\n",
+            lidars_.size(),
+            faults.size(),
+            totals.sweeps_compared,
+            totals.samples_compared,
+            took_ms.size(),
+            took_ms.at(took_ms.size() / 2),
+            took_ms.at(took_ms.size() * 99 / 100),
+            took_ms.back()
+        );
+    }
+
+    Options options_;
+    test::ScratchDirectory scratch_;
+    std::vector<std::unique_ptr<Lidar>> lidars_;
+    std::unique_ptr<Gateway> gateway_;
+    std::unique_ptr<Watcher> watcher_;
+    std::vector<Seen> first_;
+};
+
+}  // namespace
+}  // namespace sweepcast::chaos
+
+int main(int count, char** arguments) {
+    sweepcast::chaos::Options options;
+    CLI::App app(
+        "Virtual lidars under one gateway, the first of which misbehaves in every way in turn. The "
+        "others: no state changes, no sweep is skipped, no packet is lost or damaged, and every "
+        "sample that they measured comes, as it was measured. Meanwhile the API is asked fifty "
+        "times a second."
+    );
+    app.add_option("--lidars", options.lidars)->check(CLI::Range(2, 64));
+    app.add_option("--fault-seconds", options.fault_s, "how long each fault lasts");
+    CLI11_PARSE(app, count, arguments);
+    try {
+        sweepcast::chaos::Isolation(options).run();
+    } catch (const std::exception& failure) {
+        fmt::print("FAILED: {}\n", failure.what());
+        return 1;
+    }
+    return 0;
+}
