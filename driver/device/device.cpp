@@ -329,7 +329,7 @@ asio::awaitable<Result<void>> Device::leave_protection(Conversation& talk) {
     if (!wanted_.to_scan()) {
         co_return co_await watch_health(talk);
     }
-    if (!supervisor_.take_reset(Moment::now())) {
+    if (!supervisor_.may_reset(Moment::now())) {
         const auto advice = reset_in_vain(supervisor_.resets_taken(), state_.health->code);
         tell_failure(advice, "no more resets by itself");
         happened(Event::give_up, advice);
@@ -340,6 +340,7 @@ asio::awaitable<Result<void>> Device::leave_protection(Conversation& talk) {
     if (!waited) {
         co_return waited;
     }
+    supervisor_.count_reset(Moment::now());
     co_return co_await reboot(talk, problem);
 }
 

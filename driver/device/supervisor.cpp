@@ -96,26 +96,26 @@ void Supervisor::plan_attempt(Moment now) {
     life_.next_attempt = now.wall + wait;
 }
 
-bool Supervisor::take_reset(Moment now) {
+bool Supervisor::may_reset(Moment now) {
     while (!resets_.empty() && now.steady - resets_.front() >= policy_.reset_window) {
         resets_.pop_front();
     }
-    if (resets_.size() >= policy_.resets) {
-        return false;
-    }
-    resets_.push_back(now.steady);
-    return true;
+    return resets_.size() < policy_.resets;
 }
 
 std::chrono::milliseconds Supervisor::reset_wait() {
-    if (resets_.size() <= 1) {
+    if (resets_.empty()) {
         return {};
     }
     return async::wait_after(
-        static_cast<std::uint32_t>(resets_.size() - 1),
+        static_cast<std::uint32_t>(resets_.size()),
         policy_.reset_waits,
         luck()
     );
+}
+
+void Supervisor::count_reset(Moment now) {
+    resets_.push_back(now.steady);
 }
 
 double Supervisor::luck() {

@@ -55,10 +55,12 @@ public:
         return next_attempt_;
     }
 
-    /// Takes one of the resets that a lidar in protection stop gets by itself. False: none is left.
-    [[nodiscard]] bool take_reset(Moment now);
+    /// Whether one of the resets that a lidar in protection stop gets by itself is left.
+    [[nodiscard]] bool may_reset(Moment now);
     /// How long to wait before that reset.
     [[nodiscard]] std::chrono::milliseconds reset_wait();
+    /// The reset is made now.
+    void count_reset(Moment now);
     /// Its user has seen to it: all resets are there again.
     void refill_resets() { resets_.clear(); }
     [[nodiscard]] std::size_t resets_taken() const { return resets_.size(); }
