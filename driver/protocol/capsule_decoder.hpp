@@ -52,7 +52,7 @@ struct FinishedCapsule {
 ///  the
 ///    rate was not steady, nobody knows how far it turned: the capsule before the pause is given
 ///    up. It is no pause if what was sent meanwhile came together, late, or if the capsule before
-///    came after a pause, too: then the scanner is slower than it says.
+///    came after one at least half as long: then the scanner is slower than it says.
 ///
 /// `Format` says what the bytes of an answer type mean:
 ///  - `type`, `samples_per_capsule`, `start_word_at`;
@@ -103,7 +103,7 @@ private:
     std::optional<Held> held_;
     std::optional<LineDamage> damage_;
     std::size_t waiting_{};  ///< bytes that came and were not dealt with
-    bool paused_{};          ///< before the capsule held
+    std::int64_t paused_{};  ///< for how many packets, before the capsule held
 };
 
 /// Deals with the capsule or the noise at the front of `input`.
@@ -160,7 +160,7 @@ void CapsuleDecoder<Format>::accept(CapsuleBytes bytes, SampleTime arrival, Deco
         finish_held(bytes, start.angle(), arrival, out);
     } else {
         held_.emplace();
-        paused_ = false;
+        paused_ = 0;
     }
     damage_.reset();
     std::copy(bytes.begin(), bytes.end(), held_->bytes.begin());
@@ -227,8 +227,8 @@ std::int64_t CapsuleDecoder<Format>::pause_before(SampleTime arrival) const {
 /// `turned`, or by that and any number of whole turns.
 template <class Format>
 bool CapsuleDecoder<Format>::hides_turns(std::int64_t pause, std::int32_t turned) {
-    const bool follows_another = std::exchange(paused_, pause > 0);
-    if (!paused_ || follows_another) {
+    const auto one_before = std::exchange(paused_, pause);
+    if (pause <= 2 * one_before) {
         return false;
     }
     const auto times = rate_.packet_times(turned);

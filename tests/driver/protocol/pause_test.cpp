@@ -136,6 +136,15 @@ TEST_P(LossTest, OfCapsulesGivesNoSampleAWrongAngle) {
     EXPECT_EQ(told_lost(), capsules < most ? 1 : GetParam());
 }
 
+TEST_P(LossTest, RightAfterALateCapsuleGivesNoSampleAWrongAngle) {
+    receive_clean(0, clean - 1);
+    receive(clean - 1, capsule_time);
+    receive_clean(clean + GetParam(), clean);
+    const auto capsules = decoded_.samples.size() / samples_per_capsule;
+    EXPECT_GE(capsules, 2 * clean - 2);
+    expect_only_the_truth(capsules * samples_per_capsule);
+}
+
 INSTANTIATE_TEST_SUITE_P(UpToFourTurns, LossTest, testing::Range<std::size_t>(1, 61));
 
 class SpinUpTest : public LossTest {
