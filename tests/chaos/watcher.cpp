@@ -234,7 +234,11 @@ void Watcher::compare(Watched& watched) {
         const auto found = watched.truth.find(samples, sweep.scan.answer_type);
         if (found == Found::no) {
             if (Clock::now() > sweep.came + truth_comes_within) {
-                if (has_losses(sweep.scan.sweep.losses)) {
+                // A capsule before a loss has its share of the turn, not to the bit what it would
+                // have had, and the loss is told with what follows it: the next sweep, maybe.
+                if (has_losses(sweep.scan.sweep.losses) ||
+                    (watched.to_compare.size() > 1 &&
+                     has_losses(watched.to_compare[1].scan.sweep.losses))) {
                     ++totals_.sweeps_not_found;
                     watched.to_compare.pop_front();
                     continue;

@@ -46,8 +46,8 @@ struct Totals {
     std::uint64_t sweeps_compared{};
     std::uint64_t sweeps_with_holes{};
     std::uint64_t sweeps_not_compared{};
-    /// Of which the gateway itself says that bytes of them were lost, and which were not measured
-    /// so: a busy machine loses some where no fault does.
+    /// Of which, or of the sweep after it, the gateway itself says that bytes were lost, and which
+    /// were not measured so: a busy machine loses some where no fault does.
     std::uint64_t sweeps_not_found{};
 };
 
