@@ -7,6 +7,7 @@
 #include "driver/device/motor.hpp"
 #include "driver/link/open_link.hpp"
 #include "driver/protocol/model.hpp"
+#include "driver/protocol/reply.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -84,7 +85,9 @@ asio::awaitable<std::vector<Discovered>> discover(
         const auto probed = co_await probe(executor, std::move(url), std::move(port_hints));
         if (probed) {
             log->info("{}: {} at {} baud", path, shown_name(probed->identity), probed->baud);
-            found.push_back({path, probed->baud});
+            found.push_back(
+                {path, protocol::serial_text(probed->identity.info.serial), probed->baud}
+            );
         } else {
             log->info("{}: {}", path, probed.error().cause);
         }

@@ -47,6 +47,7 @@ probe_open(Conversation& talk, link::LinkUrl url, std::vector<std::uint32_t> bau
 /// A port where a lidar answered.
 struct Discovered {
     std::string path;
+    std::string serial;  ///< as protocol::serial_text() writes it
     std::uint32_t baud{};
 };
 

@@ -2,10 +2,13 @@
 
 #include "driver/device/probe.hpp"
 #include "driver/link/discovery.hpp"
+#include "driver/link/path_watch.hpp"
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 #include <set>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -25,6 +28,23 @@ std::vector<link::LinkUrl> links_of(const std::vector<gateway::LidarUrl>& lidars
         }
     }
     return links;
+}
+
+/// The ports of lidars that are named but not there, by the serial numbers that they had in earlier
+/// runs.
+std::map<std::string, std::string>
+known_but_absent(const std::vector<gateway::LidarUrl>& lidars, const gateway::LidarMemory& memory) {
+    std::map<std::string, std::string> absent;
+    for (const auto& link : links_of(lidars)) {
+        const auto* port = std::get_if<link::SerialPlace>(&link.where);
+        if (port == nullptr || link::PathLook(port->path).there()) {
+            continue;
+        }
+        if (const auto known = memory.lidar_named_by(port->path)) {
+            absent.emplace(known->serial, port->path);
+        }
+    }
+    return absent;
 }
 
 }  // namespace
@@ -81,8 +101,20 @@ asio::awaitable<void> find_lidars(
     }
     const auto hints = [&memory](const std::string& path) { return memory.baud_hints(path); };
     const auto found = co_await device::discover(executor, plan.look_at, hints, log);
-    for (const auto& [path, baud] : found) {
+    // The gateway finds these itself: taken here as well, one would be there twice, the second time
+    // at a port that is not.
+    const auto absent = known_but_absent(choice.lidars, memory);
+    for (const auto& [path, serial, baud] : found) {
+        if (const auto known = absent.find(serial); known != absent.end()) {
+            log->info(
+                "{}: this is the lidar of --lidar {}, which is not there",
+                path,
+                known->second
+            );
+            continue;
+        }
         gateway::LidarUrl lidar{path, link::LinkUrl{path, link::SerialPlace{path, std::nullopt}}};
+        lidar.is_found = true;
         lidar.baud_hint = baud;
         choice.lidars.push_back(std::move(lidar));
     }

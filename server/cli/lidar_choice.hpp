@@ -32,8 +32,9 @@ Result<LidarChoice, Problem> choose_lidars(
 /// The patterns in the environment's SWEEPCAST_DISCOVER, with ':' between them.
 std::vector<std::string> patterns_of_environment();
 
-/// Adds the lidars that answer on this machine's ports to `choice`; the log says what was looked
-/// at, and why other ports were not. Line speeds that `memory` knows are tried first.
+/// Adds the lidars that answer on this machine's ports to `choice`, but for one that `memory` knows
+/// as a lidar that is named and whose own port is not there. The log says what was looked at, and
+/// why other ports were not. Line speeds that `memory` knows are tried first.
 boost::asio::awaitable<void> find_lidars(
     boost::asio::any_io_executor executor,
     std::shared_ptr<spdlog::logger> log,

@@ -183,8 +183,8 @@ void add_serve_command(CLI::App& app, int& exit_code) {
     command.add_option(
         "--state-dir",
         arguments->state_dir,
-        "Where the line speeds of lidars are remembered (default: $STATE_DIRECTORY, else "
-        "~/.local/state/sweepcast)"
+        "Where lidars are remembered: serial numbers, ports, line speeds (default: "
+        "$STATE_DIRECTORY, else ~/.local/state/sweepcast)"
     );
     command.add_option("--log-level", arguments->log_level, "debug, info, warning or error")
         ->capture_default_str();

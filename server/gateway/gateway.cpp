@@ -14,6 +14,7 @@
 
 #include <chrono>
 #include <future>
+#include <optional>
 #include <utility>
 
 namespace sweepcast::gateway {
@@ -267,6 +268,7 @@ Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make
         .url = url.text,
         .name = url.name,
         .port_name = name,
+        .home = {},
         .is_virtual = false,
         .is_stand_in = url.is_stand_in,
         .port = {},
@@ -284,8 +286,22 @@ Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make
     }
     const auto executor = workers_[(number - 1) % workers_.size()]->executor();
     const bool can_move = !place.is_virtual && std::holds_alternative<link::SerialPlace>(way.where);
-    place.port = can_move ? std::make_unique<LidarPort>(executor, std::move(way), ports_, number)
-                          : std::make_unique<LidarPort>(executor, std::move(way));
+    if (!can_move) {
+        place.port = std::make_unique<LidarPort>(executor, std::move(way));
+        return place;
+    }
+    std::optional<RememberedLidar> remembered;
+    if (!url.is_found) {
+        place.home = std::get<link::SerialPlace>(way.where).path;
+        remembered = options_.memory->lidar_named_by(place.home);
+    }
+    place.port = std::make_unique<LidarPort>(
+        executor,
+        std::move(way),
+        ports_,
+        number,
+        std::move(remembered)
+    );
     return place;
 }
 

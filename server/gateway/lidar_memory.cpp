@@ -29,14 +29,14 @@ Problem unusable(const fs::path& file, std::string_view why) {
     return {
         make_error_code(boost::system::errc::invalid_argument),
         fmt::format("{}: {}", file.string(), why),
-        "line speeds are looked for anew; remove the file if this comes back"};
+        "line speeds and lidars are looked for anew; remove the file if this comes back"};
 }
 
 Problem unwritable(const fs::path& file, std::string_view why) {
     return {
         make_error_code(boost::system::errc::io_error),
         fmt::format("{}: {}", file.string(), why),
-        "line speeds are not remembered; name a folder that can be written with --state-dir"};
+        "lidars are not remembered; name a folder that can be written with --state-dir"};
 }
 
 /// The file's text, empty if there is none.
@@ -57,6 +57,12 @@ Result<std::string, Problem> read_text(const fs::path& path) {
         return unusable(path, "it is too large");
     }
     return text;
+}
+
+/// Whether a port's path can name a lidar from one run to the next. The number of a pseudo terminal
+/// is somebody else's by then.
+bool names_one(std::string_view port) {
+    return !port.empty() && !port.starts_with("/dev/pts/");
 }
 
 const json::string* text_in(const json::object& entry, std::string_view key) {
@@ -96,7 +102,11 @@ Result<void, Problem> LidarMemory::open(fs::path file) {
         boost::system::error_code no_number;
         const auto speed = baud->to_number<std::uint32_t>(no_number);
         if (!no_number) {
-            lidars_[std::string(*serial)] = {std::string(*port), speed};
+            const auto* const home = text_in(*entry, "home");
+            lidars_[std::string(*serial)] = {
+                std::string(*port),
+                speed,
+                home != nullptr ? std::string(*home) : std::string()};
         }
     }
     return {};
@@ -106,8 +116,10 @@ std::vector<std::uint32_t> LidarMemory::baud_hints(const std::string& port) cons
     const std::lock_guard lock(mutex_);
     std::vector<std::pair<int, std::uint32_t>> ranked;  // how much speaks for it, speed
     for (const auto& [serial, entry] : lidars_) {
-        constexpr int last_met_there = 1'000'000;
-        const int weight = entry.port == port ? last_met_there : 1;
+        constexpr int named_by_it = 1'000'000;
+        constexpr int last_met_there = 2 * named_by_it;
+        const int weight = 1 + (entry.port == port ? last_met_there : 0) +
+                           (!port.empty() && entry.home == port ? named_by_it : 0);
         const auto known =
             std::ranges::find(ranked, entry.baud, [](const auto& each) { return each.second; });
         if (known != ranked.end()) {
@@ -124,22 +136,54 @@ std::vector<std::uint32_t> LidarMemory::baud_hints(const std::string& port) cons
     return bauds;
 }
 
-Result<void, Problem>
-LidarMemory::note(const std::string& serial, const std::string& port, std::uint32_t baud) {
+std::optional<RememberedLidar> LidarMemory::lidar_named_by(const std::string& port) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = std::ranges::find_if(lidars_, [&](const auto& each) {
+        return names_one(port) && each.second.home == port;
+    });
+    if (found == lidars_.end()) {
+        return std::nullopt;
+    }
+    return RememberedLidar{found->first, found->second.baud};
+}
+
+/// The home to keep: none for a serial number that two lidars have, which would be taken for each
+/// other in the next run.
+std::string LidarMemory::settle_home(const std::string& serial, const std::string& home) {
+    if (!names_one(home)) {
+        const auto known = lidars_.find(serial);
+        return known != lidars_.end() ? known->second.home : std::string();
+    }
+    auto& noted = homes_.try_emplace(serial, home).first->second;
+    if (noted != home) {
+        noted.clear();
+    }
+    return noted;
+}
+
+Result<void, Problem> LidarMemory::note(
+    const std::string& serial,
+    const std::string& port,
+    std::uint32_t baud,
+    const std::string& home
+) {
     const std::lock_guard lock(mutex_);
     if (file_.empty()) {
         return {};
     }
-    const Entry entry{port, baud};
+    const Entry entry{port, baud, settle_home(serial, home)};
     const auto known = lidars_.find(serial);
     if ((known != lidars_.end() && known->second == entry) ||
         (known == lidars_.end() && lidars_.size() >= most_lidars)) {
         return {};
     }
-    // A port has one lidar: what was there before is elsewhere now.
+    // A port has one lidar: what was there before is elsewhere now. And it names one.
     for (auto& [other, place] : lidars_) {
         if (place.port == port) {
             place.port.clear();
+        }
+        if (place.home == entry.home) {
+            place.home.clear();
         }
     }
     lidars_[serial] = entry;
@@ -150,7 +194,9 @@ LidarMemory::note(const std::string& serial, const std::string& port, std::uint3
 Result<void, Problem> LidarMemory::write() const {
     json::array list;
     for (const auto& [serial, entry] : lidars_) {
-        list.push_back({{"serial", serial}, {"port", entry.port}, {"baud", entry.baud}});
+        list.push_back(
+            {{"serial", serial}, {"port", entry.port}, {"baud", entry.baud}, {"home", entry.home}}
+        );
     }
     const json::object root{{"lidars", std::move(list)}};
     std::error_code failure;

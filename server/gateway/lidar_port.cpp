@@ -19,12 +19,18 @@ LidarPort::LidarPort(
     asio::any_io_executor executor,
     link::LinkUrl way,
     LidarPorts& ports,
-    std::uint32_t number
+    std::uint32_t number,
+    std::optional<RememberedLidar> remembered
 )
     : LidarPort(std::move(executor), std::move(way)) {
     ports_ = &ports;
     number_ = number;
-    ports.add(number, path(), [this] { asio::post(executor_, [this] { changed_.notify(); }); });
+    ports.add(
+        number,
+        path(),
+        [this] { asio::post(executor_, [this] { changed_.notify(); }); },
+        std::move(remembered)
+    );
 }
 
 std::string LidarPort::path() const {

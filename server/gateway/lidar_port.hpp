@@ -7,6 +7,7 @@
 #include "driver/link/path_watch.hpp"
 #include "driver/protocol/reply.hpp"
 #include "driver/protocol/result.hpp"
+#include "server/gateway/lidar_memory.hpp"
 #include "server/gateway/lidar_ports.hpp"
 
 #include <boost/asio/any_io_executor.hpp>
@@ -25,12 +26,14 @@ class LidarPort {
 public:
     /// A place that stays what it is: on the network, or a virtual lidar's.
     LidarPort(boost::asio::any_io_executor executor, link::LinkUrl way);
-    /// A serial port; `ports` tells when its lidar, number `number`, is at another.
+    /// A serial port; `ports` tells when its lidar, number `number`, is at another. The one that
+    /// is `remembered` is expected there, or whoever is there.
     LidarPort(
         boost::asio::any_io_executor executor,
         link::LinkUrl way,
         LidarPorts& ports,
-        std::uint32_t number
+        std::uint32_t number,
+        std::optional<RememberedLidar> remembered = {}
     );
     LidarPort(const LidarPort&) = delete;
     LidarPort& operator=(const LidarPort&) = delete;

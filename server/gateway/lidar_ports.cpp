@@ -4,6 +4,7 @@
 #include "driver/link/device_node.hpp"
 #include "driver/link/discovery.hpp"
 #include "driver/link/open_link.hpp"
+#include "driver/link/port_holder.hpp"
 #include "driver/protocol/reply.hpp"
 
 #include <boost/asio/co_spawn.hpp>
@@ -63,7 +64,10 @@ LidarPorts::LidarPorts(
     , worker_(std::make_unique<async::Worker>("lidar search", on_failure)) {
     wanted_ = std::make_unique<async::Notifier>(worker_->executor());
     for (const auto& path : link::ports_worth_a_look(patterns_)) {
-        known_.insert_or_assign(link::device_node(path), Known{link::PathLook(path)});
+        known_.insert_or_assign(
+            link::device_node(path),
+            Known{.look = link::PathLook(path), .was_there = true}
+        );
     }
     asio::post(worker_->executor(), [this] { worker_->tasks().spawn(search()); });
 }
@@ -84,9 +88,19 @@ void LidarPorts::stop() {
     worker_->stop();
 }
 
-void LidarPorts::add(std::uint32_t number, const std::string& path, std::function<void()> on_move) {
+void LidarPorts::add(
+    std::uint32_t number,
+    const std::string& path,
+    std::function<void()> on_move,
+    std::optional<RememberedLidar> remembered
+) {
     const std::scoped_lock lock(mutex_);
-    lidars_.insert_or_assign(number, Lidar{path, std::move(on_move)});
+    Lidar lidar{path, std::move(on_move)};
+    if (remembered) {
+        lidar.serial = std::move(remembered->serial);
+        lidar.baud = remembered->baud;
+    }
+    lidars_.insert_or_assign(number, std::move(lidar));
 }
 
 std::string LidarPorts::path_of(std::uint32_t number) const {
@@ -103,7 +117,9 @@ void LidarPorts::seek(std::uint32_t number, std::uint32_t baud) {
     const std::scoped_lock lock(mutex_);
     auto& lidar = lidars_.at(number);
     lidar.in_hand = false;
-    lidar.baud = baud;
+    if (lidar.met) {
+        lidar.baud = baud;
+    }
     if (lidar.serial.empty() || std::exchange(lidar.sought, true)) {
         return;
     }
@@ -162,6 +178,7 @@ LidarPorts::Lidar* LidarPorts::owner_of(const std::string& serial) {
 
 void LidarPorts::take(Lidar& lidar, const std::string& serial) {
     lidar.serial = serial;
+    lidar.met = true;
     lidar.in_hand = true;
     lidar.sought = false;
     lidar.replaced.reset();
@@ -184,6 +201,14 @@ bool LidarPorts::is_taken(const std::string& node) const {
 bool LidarPorts::any_sought() const {
     const std::scoped_lock lock(mutex_);
     return std::ranges::any_of(lidars_, [](const auto& each) { return each.second.sought; });
+}
+
+/// Whether one is that was not met since the start.
+bool LidarPorts::any_sought_from_start() const {
+    const std::scoped_lock lock(mutex_);
+    return std::ranges::any_of(lidars_, [](const auto& each) {
+        return each.second.sought && !each.second.met;
+    });
 }
 
 std::vector<std::uint32_t> LidarPorts::sought_bauds() const {
@@ -219,17 +244,20 @@ asio::awaitable<void> LidarPorts::search() {
     }
 }
 
-/// Asks at each port that newly appeared who is there.
+/// Asks at each port that newly appeared, or that is worth it for another reason, who is there.
 void LidarPorts::look_around() {
+    const bool from_start = any_sought_from_start();
     std::erase_if(known_, [](const auto& each) {
         return link::PathLook(each.first) != each.second.look;
     });
     for (const auto& path : link::ports_worth_a_look(patterns_)) {
         const auto node = link::device_node(path);
         const link::PathLook look(path);
-        const auto known = known_.find(node);
-        if (known != known_.end() && known->second.look == look) {
-            answered(path, known->second.serial);
+        const auto found = known_.find(node);
+        auto known = found != known_.end() && found->second.look == look ? found->second
+                                                                         : Known{.look = look};
+        if (known.asked || (known.was_there && !from_start)) {
+            answered(path, known.serial);
             continue;
         }
         {
@@ -238,32 +266,42 @@ void LidarPorts::look_around() {
                 continue;
             }
         }
-        known_.insert_or_assign(node, Known{look});
-        worker_->tasks().spawn(ask(path, look));
+        known.asked = true;
+        known_.insert_or_assign(node, known);
+        worker_->tasks().spawn(ask(path, known));
     }
 }
 
-/// Asks until someone answers, nobody is sought, or it is in vain.
-asio::awaitable<void> LidarPorts::ask(std::string path, link::PathLook look) {
+/// Asks until someone answers, nobody is sought, or it is in vain; once if the port was there from
+/// the start.
+asio::awaitable<void> LidarPorts::ask(std::string path, Known known) {
     const auto node = link::device_node(path);
-    const auto give_up = Clock::now() + ask_for;
-    log_->info("looking for a lidar on {}, which newly appeared", path);
+    const auto give_up = known.was_there ? Clock::now() : Clock::now() + ask_for;
+    log_->info(
+        "looking for a lidar on {}{}",
+        path,
+        known.was_there ? "" : ", which newly appeared"
+    );
     async::Notifier nothing(worker_->executor());
-    while (any_sought() && Clock::now() < give_up && link::PathLook(path) == look) {
-        auto hints = sought_bauds();
-        const auto serial = co_await ask_serial(path, std::move(hints));
+    do {
+        std::optional<std::string> serial;
+        if (link::find_port_holders(node).empty()) {
+            auto hints = sought_bauds();
+            serial = co_await ask_serial(path, std::move(hints));
+        }
         if (serial) {
             log_->info("{}: lidar {}", path, shortened(*serial));
-            known_.insert_or_assign(node, Known{look, *serial});
+            known.serial = *serial;
+            known_.insert_or_assign(node, known);
             answered(path, *serial);
             co_return;
         }
         co_await nothing.wait_until(Clock::now() + ask_again_after);
-    }
+    } while (any_sought() && Clock::now() < give_up && link::PathLook(path) == known.look);
     // Not known then who is there: it is asked again for the next one that is sought.
-    const auto known = known_.find(node);
-    if (known != known_.end() && known->second.look == look && !any_sought()) {
-        known_.erase(known);
+    const auto found = known_.find(node);
+    if (found != known_.end() && found->second.look == known.look && !any_sought()) {
+        found->second.asked = false;
     }
 }
 

@@ -1,10 +1,12 @@
 // LidarPorts: at which serial port each lidar of the gateway is. Looks for one whose port is gone,
 // or has another lidar now, at ports that newly appeared: there it is asked for its serial number.
+// One that an earlier run knew is looked for at the ports that were there before, too.
 #pragma once
 
 #include "driver/async/notifier.hpp"
 #include "driver/async/worker.hpp"
 #include "driver/link/path_watch.hpp"
+#include "server/gateway/lidar_memory.hpp"
 
 #include <boost/asio/awaitable.hpp>
 #include <spdlog/logger.h>
@@ -29,8 +31,9 @@ public:
     /// its place.
     static constexpr std::chrono::seconds adopt_after{3};
 
-    /// Looks at USB ports that a lidar may be behind and at what matches `patterns`, but not at
-    /// those that are there now: lidars were looked for there before.
+    /// Looks at USB ports that a lidar may be behind and at what matches `patterns`. Those that are
+    /// there now are asked only for a lidar that an earlier run knew and that was not met since,
+    /// and once: whoever is there has had the time to boot.
     LidarPorts(
         std::vector<std::string> patterns,
         const async::TaskGroup::OnFailure& on_failure,
@@ -43,9 +46,14 @@ public:
     /// Ends the search. No on_move is called any more.
     void stop();
 
-    /// Lidar `number` is expected at `path`. `on_move` is called, on any thread, when it is
-    /// elsewhere.
-    void add(std::uint32_t number, const std::string& path, std::function<void()> on_move);
+    /// Lidar `number` is expected at `path`: the one that is `remembered`, or whoever is there.
+    /// `on_move` is called, on any thread, when it is elsewhere.
+    void add(
+        std::uint32_t number,
+        const std::string& path,
+        std::function<void()> on_move,
+        std::optional<RememberedLidar> remembered = {}
+    );
 
     /// Where it is, as far as is known.
     [[nodiscard]] std::string path_of(std::uint32_t number) const;
@@ -69,6 +77,7 @@ private:
         std::function<void()> on_move;
         std::string serial{};  ///< empty: not known yet
         std::uint32_t baud{};
+        bool met{};  ///< in this run
         bool in_hand{};
         bool sought{};
         /// Since when another one is at its port.
@@ -77,6 +86,8 @@ private:
     /// A port that was looked at: as what, and who answered.
     struct Known {
         link::PathLook look;
+        bool was_there{};  ///< from the start
+        bool asked{};
         std::string serial{};
     };
 
@@ -85,11 +96,12 @@ private:
     void move(Lidar& lidar, const std::string& path);
     [[nodiscard]] bool is_taken(const std::string& node) const;
     [[nodiscard]] bool any_sought() const;
+    [[nodiscard]] bool any_sought_from_start() const;
     [[nodiscard]] std::vector<std::uint32_t> sought_bauds() const;
     void answered(const std::string& path, const std::string& serial);
 
     boost::asio::awaitable<void> search();
-    boost::asio::awaitable<void> ask(std::string path, link::PathLook look);
+    boost::asio::awaitable<void> ask(std::string path, Known known);
     void look_around();
 
     std::vector<std::string> patterns_;

@@ -46,6 +46,7 @@ struct LidarUrl {
     std::optional<double> hz{};  ///< rotations per second; none: not asked for
     /// How long it turns on when nobody watches; none: always, or as the gateway is told.
     std::optional<std::chrono::seconds> motor_off_after{};
+    bool is_found{};                           ///< nobody named it: a lidar answered there
     std::optional<std::uint32_t> baud_hint{};  ///< line speed at which it was just found
     /// Nobody asked for it: it stands in for a lidar that was not found.
     bool is_stand_in{};

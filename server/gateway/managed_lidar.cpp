@@ -170,7 +170,8 @@ void ManagedLidar::remember(const device::DeviceState& state) {
     const auto noted = memory_.note(
         protocol::serial_text(state.info->serial),
         place_.port->path(),
-        state.line.baud
+        state.line.baud,
+        place_.home
     );
     if (!noted) {
         log_->warn("{}: {}", noted.error().cause, noted.error().hint);

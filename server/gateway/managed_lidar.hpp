@@ -28,6 +28,7 @@ struct LidarPlace {
     std::string url;
     std::string name;  ///< that its user gave it; empty: it goes by its serial number
     std::string port_name;
+    std::string home{};  ///< the serial port by which its user names it; empty: nobody did
     bool is_virtual{};
     bool is_stand_in{};
     std::unique_ptr<LidarPort> port;  ///< on the executor of the lidar's worker

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -45,6 +46,13 @@ protected:
 
     std::unique_ptr<Lidar> plug(const std::string& link, const std::string& serial) {
         return std::make_unique<Lidar>(scratch.file(link), serial);
+    }
+    /// Has a gateway know the lidar that is at that port, where its user names it.
+    void meet_in_an_earlier_run(const std::string& link) {
+        GatewayProcess gateway({"--lidar", scratch.file(link), "--state-dir", scratch.file("state")}
+        );
+        Subscriber client("tcp://" + gateway.tcp);
+        client.wait_for_state(v1::Lidar::SCANNING);
     }
     /// Waits until the lidar of that id scans at that port.
     static v1::Lidar wait_for(Subscriber& client, const std::string& id, const std::string& url) {
@@ -153,6 +161,81 @@ TEST_F(PortMoves, AnotherLidarOnThePortDoesNotTakeThePlaceOfOneThatIsElsewhere) 
     const auto stranger = plug("one", serial_b);
     lidar = plug("two", serial_a);
     wait_for(client, "A0A0A0A0", scratch.file("two"));
+}
+
+TEST_F(PortMoves, ALidarThatMovedWhileTheGatewayWasOffIsFoundByItsSerialNumber) {
+    auto lidar = plug("one", serial_a);
+    meet_in_an_earlier_run("one");
+    lidar.reset();
+    const auto stranger = plug("two", serial_b);
+    lidar = plug("three", serial_a);
+    GatewayProcess gateway(
+        {"--lidar",
+         scratch.file("one") + "?name=front",
+         "--discover",
+         scratch.file("t*"),
+         "--state-dir",
+         scratch.file("state")}
+    );
+    Subscriber client("tcp://" + gateway.tcp);
+    const auto hello = client.next();
+    EXPECT_EQ(hello.hello().lidars_size(), 2) << "it is not there twice";
+    client.subscribe();
+    wait_for(client, "front", scratch.file("three") + "?name=front");
+}
+
+TEST_F(PortMoves, ALidarThatMovedWhileTheGatewayWasOffGetsItsOwnPortBackWhenItReturns) {
+    auto lidar = plug("one", serial_a);
+    meet_in_an_earlier_run("one");
+    lidar.reset();
+    GatewayProcess gateway({"--lidar", scratch.file("one"), "--state-dir", scratch.file("state")});
+    Subscriber client("tcp://" + gateway.tcp);
+    client.subscribe();
+    lidar = plug("one", serial_a);
+    wait_for(client, "A0A0A0A0", scratch.file("one"));
+}
+
+TEST_F(PortMoves, AnotherLidarOnItsPortIsNotTakenForOneThatMovedWhileTheGatewayWasOff) {
+    auto lidar = plug("one", serial_a);
+    meet_in_an_earlier_run("one");
+    lidar.reset();
+    const auto stranger = plug("one", serial_b);
+    lidar = plug("two", serial_a);
+    GatewayProcess gateway(
+        {"--lidar",
+         scratch.file("one") + "?name=front",
+         "--discover",
+         scratch.file("two"),
+         "--state-dir",
+         scratch.file("state")}
+    );
+    Subscriber client("tcp://" + gateway.tcp);
+    client.subscribe();
+    std::map<std::string, std::string> places;
+    while (places.size() < 2) {
+        const auto scanning = client.wait_for_state(v1::Lidar::SCANNING);
+        places[scanning.id()] = scanning.url();
+    }
+    EXPECT_THAT(
+        places,
+        testing::ElementsAre(
+            testing::Pair("B0B0B0B0", scratch.file("one")),
+            testing::Pair("front", scratch.file("two") + "?name=front")
+        )
+    );
+}
+
+TEST_F(PortMoves, AnotherLidarTakesThePlaceOfOneThatIsNowhereSinceTheGatewayWasOff) {
+    auto lidar = plug("one", serial_a);
+    meet_in_an_earlier_run("one");
+    lidar.reset();
+    lidar = plug("one", serial_b);
+    GatewayProcess gateway({"--lidar", scratch.file("one"), "--state-dir", scratch.file("state")});
+    gateway.process.wait_for_log("lidar B0B0B0B0 is there, and not A0A0A0A0");
+    gateway.process.wait_for_log("lidar B0B0B0B0 takes the place of A0A0A0A0");
+    Subscriber client("tcp://" + gateway.tcp);
+    client.subscribe();
+    client.wait_for_state(v1::Lidar::SCANNING);
 }
 
 }  // namespace

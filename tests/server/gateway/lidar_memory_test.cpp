@@ -64,6 +64,60 @@ TEST_F(LidarMemoryTest, FollowsALidarToAnotherPort) {
     EXPECT_THAT(memory.baud_hints("/dev/ttyUSB1"), ElementsAre(460800, 256000));
 }
 
+TEST_F(LidarMemoryTest, KnowsWhichLidarAPortNamesWhereverThatWent) {
+    LidarMemory first;
+    ASSERT_TRUE(first.open(file));
+    ASSERT_TRUE(first.note("AAAA", "/dev/ttyUSB0", 460800, "/dev/ttyUSB0"));
+    ASSERT_TRUE(first.note("AAAA", "/dev/ttyUSB1", 460800, "/dev/ttyUSB0"));
+    LidarMemory second;
+    ASSERT_TRUE(second.open(file));
+    EXPECT_EQ(second.lidar_named_by("/dev/ttyUSB0"), (RememberedLidar{"AAAA", 460800}));
+    EXPECT_EQ(second.lidar_named_by("/dev/ttyUSB1"), std::nullopt);
+    EXPECT_THAT(second.baud_hints("/dev/ttyUSB0"), ElementsAre(460800));
+}
+
+TEST_F(LidarMemoryTest, ALidarThatNobodyNamedIsNamedByNoPort) {
+    LidarMemory memory;
+    ASSERT_TRUE(memory.open(file));
+    ASSERT_TRUE(memory.note("AAAA", "/dev/ttyUSB0", 460800));
+    EXPECT_EQ(memory.lidar_named_by("/dev/ttyUSB0"), std::nullopt);
+    EXPECT_EQ(memory.lidar_named_by(""), std::nullopt);
+}
+
+TEST_F(LidarMemoryTest, APseudoTerminalNamesNobodyForItsNumberIsGivenAgain) {
+    LidarMemory memory;
+    ASSERT_TRUE(memory.open(file));
+    ASSERT_TRUE(memory.note("AAAA", "/dev/pts/5", 460800, "/dev/pts/5"));
+    EXPECT_EQ(memory.lidar_named_by("/dev/pts/5"), std::nullopt);
+    EXPECT_THAT(memory.baud_hints("/dev/pts/5"), ElementsAre(460800));
+}
+
+TEST_F(LidarMemoryTest, ALidarKeepsItsNameInARunInWhichNobodyNamesIt) {
+    LidarMemory memory;
+    ASSERT_TRUE(memory.open(file));
+    ASSERT_TRUE(memory.note("AAAA", "/dev/ttyUSB0", 460800, "/dev/ttyUSB0"));
+    ASSERT_TRUE(memory.note("AAAA", "/dev/ttyUSB1", 460800));
+    EXPECT_EQ(memory.lidar_named_by("/dev/ttyUSB0")->serial, "AAAA");
+}
+
+TEST_F(LidarMemoryTest, APortNamesTheLidarThatTookTheOthersPlace) {
+    LidarMemory memory;
+    ASSERT_TRUE(memory.open(file));
+    ASSERT_TRUE(memory.note("AAAA", "/dev/ttyUSB0", 460800, "/dev/ttyUSB0"));
+    ASSERT_TRUE(memory.note("BBBB", "/dev/ttyUSB0", 256000, "/dev/ttyUSB0"));
+    EXPECT_EQ(memory.lidar_named_by("/dev/ttyUSB0")->serial, "BBBB");
+}
+
+TEST_F(LidarMemoryTest, TwoLidarsOfOneSerialNumberAreNotTakenForEachOther) {
+    LidarMemory memory;
+    ASSERT_TRUE(memory.open(file));
+    for (const auto* port : {"/dev/ttyUSB0", "/dev/ttyUSB1", "/dev/ttyUSB0"}) {
+        ASSERT_TRUE(memory.note("0000", port, 460800, port));
+    }
+    EXPECT_EQ(memory.lidar_named_by("/dev/ttyUSB0"), std::nullopt);
+    EXPECT_EQ(memory.lidar_named_by("/dev/ttyUSB1"), std::nullopt);
+}
+
 TEST_F(LidarMemoryTest, WithoutAFileNothingIsRemembered) {
     LidarMemory memory;
     EXPECT_TRUE(memory.note("AAAA", "/dev/ttyUSB0", 460800));
