@@ -96,7 +96,9 @@ asio::awaitable<void> Device::await_attempt(const Problem& problem) {
         co_await pause_until(Clock::now() + options_.look_interval);
         co_return;
     }
-    tell_failure(problem, "trying again");
+    if (!port_.has_moved || !port_.has_moved()) {
+        tell_failure(problem, "trying again");
+    }
     happened(Event::lost, problem);
     co_await pause_until(supervisor_.next_attempt());
 }
@@ -249,6 +251,9 @@ std::vector<std::uint32_t> Device::bauds() const {
     std::vector<std::uint32_t> hints;
     if (options_.baud) {
         hints.push_back(*options_.baud);
+    }
+    if (port_.baud_hint) {
+        hints.push_back(port_.baud_hint());
     }
     hints.push_back(state_.line.baud);
     hints.insert(hints.end(), options_.baud_hints.begin(), options_.baud_hints.end());

@@ -57,6 +57,11 @@ struct Port {
         wait_for_change{};
     /// Whether the lidar that answers there is the one to have. Empty: any is.
     std::function<bool(const protocol::DeviceInfo&)> is_it{};
+    /// The line speed at which the lidar was just found there; 0, or empty: not known.
+    std::function<std::uint32_t()> baud_hint{};
+    /// Whether the lidar is known to be elsewhere since open() was last called, so that its loss is
+    /// no news. Empty: it never is.
+    std::function<bool()> has_moved{};
 };
 
 /// Examines the lidar and its port from outside.

@@ -125,8 +125,8 @@ void stand_in_for_none(LidarChoice& choice, spdlog::logger& log) {
         return;
     }
     log.warn(
-        "no lidar found: starting a virtual one. Name a port with --lidar, e.g. --lidar "
-        "/dev/ttyUSB0"
+        "no lidar found: starting a virtual one, until one is plugged in. Or name its port with "
+        "--lidar, e.g. --lidar /dev/ttyUSB0"
     );
     auto& stand_in = choice.lidars.emplace_back(*gateway::parse_lidar_url(default_virtual));
     stand_in.is_stand_in = true;

@@ -42,7 +42,8 @@ boost::asio::awaitable<void> find_lidars(
     LidarChoice& choice
 );
 
-/// A virtual lidar for a choice that is empty, with a warning.
+/// A virtual lidar for a choice that is empty, with a warning: the first one that is plugged in
+/// takes its place.
 void stand_in_for_none(LidarChoice& choice, spdlog::logger& log);
 
 }  // namespace sweepcast::cli

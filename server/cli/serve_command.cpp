@@ -152,7 +152,7 @@ void add_serve_command(CLI::App& app, int& exit_code) {
         "another gateway's: sweepcast://HOST[:PORT][/ID][?name=ID]. Repeatable. Without "
         "it every RPLIDAR found on a USB port is taken, and if there "
         "is "
-        "none a virtual one is started"
+        "none a virtual one is started, until one is plugged in"
     );
     command.add_option(
         "--discover",

@@ -188,7 +188,9 @@ Result<void, Problem> Gateway::add_lidars(const MakeLogger& make_logger) {
             return where.error();
         }
         auto& worker = *workers_[lidars_.size() % workers_.size()];
-        auto log = make_logger("lidar " + where->port_name);
+        // A stand-in's name would go on in the log when a real lidar has taken its place.
+        const auto logged_as = where->is_stand_in ? std::to_string(number) : where->port_name;
+        auto log = make_logger("lidar " + logged_as);
         lidars_.push_back(std::make_unique<ManagedLidar>(
             std::move(*where),
             options_for(url),
@@ -286,6 +288,13 @@ Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make
     }
     const auto executor = workers_[(number - 1) % workers_.size()]->executor();
     const bool can_move = !place.is_virtual && std::holds_alternative<link::SerialPlace>(way.where);
+    if (place.is_stand_in) {
+        place.port =
+            std::make_unique<LidarPort>(executor, std::move(way), ports_, number, [this, number] {
+                virtual_lidars_.end(number);
+            });
+        return place;
+    }
     if (!can_move) {
         place.port = std::make_unique<LidarPort>(executor, std::move(way));
         return place;

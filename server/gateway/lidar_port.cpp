@@ -33,6 +33,22 @@ LidarPort::LidarPort(
     );
 }
 
+LidarPort::LidarPort(
+    asio::any_io_executor executor,
+    link::LinkUrl way,
+    LidarPorts& ports,
+    std::uint32_t number,
+    std::function<void()> on_taken
+)
+    : LidarPort(std::move(executor), std::move(way)) {
+    ports_ = &ports;
+    number_ = number;
+    ports.add_vacant(number, path(), [this, on_taken = std::move(on_taken)] {
+        on_taken();
+        asio::post(executor_, [this] { changed_.notify(); });
+    });
+}
+
 std::string LidarPort::path() const {
     const auto* serial = std::get_if<link::SerialPlace>(&way_.where);
     return serial != nullptr ? serial->path : std::string();
@@ -49,9 +65,16 @@ asio::awaitable<Result<std::unique_ptr<link::Link>, Problem>> LidarPort::open(st
     co_return co_await link::open_link(executor_, way_, baud);
 }
 
+bool LidarPort::has_moved() const {
+    return ports_ != nullptr && ports_->path_of(number_) != path();
+}
+
 bool LidarPort::is_it(const protocol::DeviceInfo& info) {
     refused_ =
         ports_ != nullptr && !ports_->is_it(number_, path(), protocol::serial_text(info.serial));
+    if (!refused_) {
+        found_at_ = 0;
+    }
     return !refused_;
 }
 
@@ -73,12 +96,13 @@ asio::awaitable<void> LidarPort::wait_for_change(std::chrono::steady_clock::time
 
 /// Goes where the lidar is now. False if that is where it was.
 bool LidarPort::follow() {
-    const auto path = ports_ != nullptr ? ports_->path_of(number_) : this->path();
-    if (path == this->path()) {
+    if (!has_moved()) {
         return false;
     }
+    const auto path = ports_->path_of(number_);
     std::get<link::SerialPlace>(way_.where).path = path;
     way_.text = path;
+    found_at_ = ports_->baud_at_path(number_);
     return true;
 }
 

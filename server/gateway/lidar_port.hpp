@@ -15,6 +15,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -35,6 +36,15 @@ public:
         std::uint32_t number,
         std::optional<RememberedLidar> remembered = {}
     );
+    /// The port of a virtual lidar that stands in for one. Once `ports` has a lidar for its place,
+    /// number `number`, it is the port of that, and `on_taken` is called, on any thread.
+    LidarPort(
+        boost::asio::any_io_executor executor,
+        link::LinkUrl way,
+        LidarPorts& ports,
+        std::uint32_t number,
+        std::function<void()> on_taken
+    );
     LidarPort(const LidarPort&) = delete;
     LidarPort& operator=(const LidarPort&) = delete;
 
@@ -44,6 +54,13 @@ public:
 
     /// Opens it, at `baud` if it has a speed. Errors: those of link::open_link().
     boost::asio::awaitable<Result<std::unique_ptr<link::Link>, Problem>> open(std::uint32_t baud);
+
+    /// The line speed at which the lidar was found where it is now; 0: it was not, or has been met
+    /// there since.
+    [[nodiscard]] std::uint32_t baud_hint() const { return found_at_; }
+
+    /// Whether the lidar is elsewhere since open() was last called.
+    [[nodiscard]] bool has_moved() const;
 
     /// Whether the lidar that answers there is the one expected, or is taken for want of that (see
     /// LidarPorts::is_it).
@@ -62,6 +79,7 @@ private:
     LidarPorts* ports_{};
     std::uint32_t number_{};
     std::uint32_t baud_{};                 ///< at which it was last opened
+    std::uint32_t found_at_{};             ///< as baud_hint()
     bool refused_{};                       ///< another lidar was there
     std::optional<link::PathLook> tried_;  ///< the device file, when open() was last begun
     async::Notifier changed_;

@@ -34,9 +34,9 @@ std::string shortened(const std::string& serial) {
     return serial.substr(0, digits);
 }
 
-/// The serial number of the lidar that answers at `path`; nothing if none does.
-asio::awaitable<std::optional<std::string>>
-ask_serial(std::string path, std::vector<std::uint32_t> baud_hints) {
+/// The lidar that answers at `path`; nothing if none does.
+asio::awaitable<std::optional<device::Found>>
+ask_who(std::string path, std::vector<std::uint32_t> baud_hints) {
     const auto bauds = device::bauds_to_try(baud_hints);
     link::LinkUrl url{path, link::SerialPlace{path, {}}};
     auto link =
@@ -49,7 +49,7 @@ ask_serial(std::string path, std::vector<std::uint32_t> baud_hints) {
     if (!found) {
         co_return std::nullopt;
     }
-    co_return protocol::serial_text(found->info.serial);
+    co_return *found;
 }
 
 }  // namespace
@@ -103,9 +103,29 @@ void LidarPorts::add(
     lidars_.insert_or_assign(number, std::move(lidar));
 }
 
+void LidarPorts::add_vacant(
+    std::uint32_t number,
+    const std::string& path,
+    std::function<void()> on_move
+) {
+    {
+        const std::scoped_lock lock(mutex_);
+        Lidar lidar{path, std::move(on_move)};
+        lidar.vacant = true;
+        lidar.sought = true;
+        lidars_.insert_or_assign(number, std::move(lidar));
+    }
+    asio::post(worker_->executor(), [this] { wanted_->notify(); });
+}
+
 std::string LidarPorts::path_of(std::uint32_t number) const {
     const std::scoped_lock lock(mutex_);
     return lidars_.at(number).path;
+}
+
+std::uint32_t LidarPorts::baud_at_path(std::uint32_t number) const {
+    const std::scoped_lock lock(mutex_);
+    return lidars_.at(number).baud_at_path;
 }
 
 void LidarPorts::lost(std::uint32_t number) {
@@ -132,6 +152,9 @@ bool LidarPorts::is_it(std::uint32_t number, const std::string& path, const std:
     if (lidar.path != path) {  // moved since: of two that swapped, the other one told
         return false;
     }
+    if (lidar.vacant && lidar.serial.empty()) {
+        return true;
+    }
     if (lidar.serial == serial) {
         take(lidar, serial);
         return true;
@@ -142,7 +165,7 @@ bool LidarPorts::is_it(std::uint32_t number, const std::string& path, const std:
         move(*other, path);
         return false;
     }
-    if (lidar.serial.empty()) {
+    if (lidar.serial.empty() || lidar.vacant) {
         take(lidar, serial);
         return true;
     }
@@ -176,20 +199,46 @@ LidarPorts::Lidar* LidarPorts::owner_of(const std::string& serial) {
     return found == lidars_.end() ? nullptr : &found->second;
 }
 
+/// One that is still to be had.
+LidarPorts::Lidar* LidarPorts::vacant_place() {
+    const auto found = std::ranges::find_if(lidars_, [](const auto& each) {
+        return each.second.vacant && each.second.sought;
+    });
+    return found == lidars_.end() ? nullptr : &found->second;
+}
+
 void LidarPorts::take(Lidar& lidar, const std::string& serial) {
     lidar.serial = serial;
+    lidar.vacant = false;
     lidar.met = true;
     lidar.in_hand = true;
     lidar.sought = false;
     lidar.replaced.reset();
 }
 
-void LidarPorts::move(Lidar& lidar, const std::string& path) {
+void LidarPorts::move(Lidar& lidar, const std::string& path, std::uint32_t baud) {
     log_->info("lidar {} is at {} now, and not at {}", shortened(lidar.serial), path, lidar.path);
     lidar.path = path;
+    lidar.baud_at_path = baud;
     lidar.sought = false;
     lidar.replaced.reset();
     lidar.on_move();
+}
+
+/// Vacant until it is in hand there: should it be gone again by then, another one may have the
+/// place.
+void LidarPorts::fill(Lidar& vacant, const std::string& path, const Known& newcomer) {
+    log_->info(
+        "lidar {} at {} takes the place of the virtual one",
+        shortened(newcomer.serial),
+        path
+    );
+    vacant.serial = newcomer.serial;
+    vacant.path = path;
+    vacant.baud = newcomer.baud;
+    vacant.baud_at_path = newcomer.baud;
+    vacant.sought = false;
+    vacant.on_move();
 }
 
 bool LidarPorts::is_taken(const std::string& node) const {
@@ -222,15 +271,18 @@ std::vector<std::uint32_t> LidarPorts::sought_bauds() const {
     return bauds;
 }
 
-/// A lidar of that serial number answered at `path`.
-void LidarPorts::answered(const std::string& path, const std::string& serial) {
-    if (serial.empty()) {
+/// That lidar, if there is one, answered at `path`.
+void LidarPorts::answered(const std::string& path, const Known& known) {
+    const std::scoped_lock lock(mutex_);
+    if (known.serial.empty() || is_taken(link::device_node(path))) {
         return;
     }
-    const std::scoped_lock lock(mutex_);
-    auto* lidar = owner_of(serial);
-    if (lidar != nullptr && lidar->sought && !is_taken(link::device_node(path))) {
-        move(*lidar, path);
+    auto* owner = owner_of(known.serial);
+    auto* vacant = owner == nullptr ? vacant_place() : nullptr;
+    if (owner != nullptr && owner->sought) {
+        move(*owner, path, known.baud);
+    } else if (vacant != nullptr) {
+        fill(*vacant, path, known);
     }
 }
 
@@ -257,7 +309,7 @@ void LidarPorts::look_around() {
         auto known = found != known_.end() && found->second.look == look ? found->second
                                                                          : Known{.look = look};
         if (known.asked || (known.was_there && !from_start)) {
-            answered(path, known.serial);
+            answered(path, known);
             continue;
         }
         {
@@ -284,16 +336,17 @@ asio::awaitable<void> LidarPorts::ask(std::string path, Known known) {
     );
     async::Notifier nothing(worker_->executor());
     do {
-        std::optional<std::string> serial;
+        std::optional<device::Found> lidar;
         if (link::find_port_holders(node).empty()) {
             auto hints = sought_bauds();
-            serial = co_await ask_serial(path, std::move(hints));
+            lidar = co_await ask_who(path, std::move(hints));
         }
-        if (serial) {
-            log_->info("{}: lidar {}", path, shortened(*serial));
-            known.serial = *serial;
+        if (lidar) {
+            known.serial = protocol::serial_text(lidar->info.serial);
+            known.baud = lidar->baud;
+            log_->info("{}: lidar {}", path, shortened(known.serial));
             known_.insert_or_assign(node, known);
-            answered(path, *serial);
+            answered(path, known);
             co_return;
         }
         co_await nothing.wait_until(Clock::now() + ask_again_after);

@@ -1,6 +1,7 @@
 // LidarPorts: at which serial port each lidar of the gateway is. Looks for one whose port is gone,
 // or has another lidar now, at ports that newly appeared: there it is asked for its serial number.
-// One that an earlier run knew is looked for at the ports that were there before, too.
+// One that an earlier run knew is looked for at the ports that were there before, too. A place that
+// is vacant is given to the first lidar that is nobody's.
 #pragma once
 
 #include "driver/async/notifier.hpp"
@@ -32,8 +33,8 @@ public:
     static constexpr std::chrono::seconds adopt_after{3};
 
     /// Looks at USB ports that a lidar may be behind and at what matches `patterns`. Those that are
-    /// there now are asked only for a lidar that an earlier run knew and that was not met since,
-    /// and once: whoever is there has had the time to boot.
+    /// there now are asked only for a lidar that was not met since (one that an earlier run knew,
+    /// or any for a place that is vacant), and once: whoever is there has had the time to boot.
     LidarPorts(
         std::vector<std::string> patterns,
         const async::TaskGroup::OnFailure& on_failure,
@@ -55,8 +56,15 @@ public:
         std::optional<RememberedLidar> remembered = {}
     );
 
+    /// Lidar `number` stands in for one, at `path`: its place is vacant. The first lidar that
+    /// answers elsewhere and is nobody's takes it: then `on_move` is called, on any thread.
+    void add_vacant(std::uint32_t number, const std::string& path, std::function<void()> on_move);
+
     /// Where it is, as far as is known.
     [[nodiscard]] std::string path_of(std::uint32_t number) const;
+
+    /// The line speed at which it was found at path_of(); 0: it was not looked for.
+    [[nodiscard]] std::uint32_t baud_at_path(std::uint32_t number) const;
 
     /// Nobody answers for the lidar now.
     void lost(std::uint32_t number);
@@ -67,7 +75,8 @@ public:
 
     /// The lidar of that serial number answers at `path`, where lidar `number` was: is it that one?
     /// If it is another of the gateway's, that gets the port; if it is a stranger, it is taken only
-    /// once the one that is known was not found elsewhere for `adopt_after`.
+    /// once the one that is known was not found elsewhere for `adopt_after`. What stands in at a
+    /// place that is vacant is it.
     [[nodiscard]] bool
     is_it(std::uint32_t number, const std::string& path, const std::string& serial);
 
@@ -77,28 +86,33 @@ private:
         std::function<void()> on_move;
         std::string serial{};  ///< empty: not known yet
         std::uint32_t baud{};
-        bool met{};  ///< in this run
+        std::uint32_t baud_at_path{};
+        bool vacant{};  ///< anybody's, until one that is not the stand-in is in hand
+        bool met{};     ///< in this run
         bool in_hand{};
         bool sought{};
         /// Since when another one is at its port.
         std::optional<std::chrono::steady_clock::time_point> replaced{};
     };
-    /// A port that was looked at: as what, and who answered.
+    /// A port that was looked at: as what, and who answered, at which speed.
     struct Known {
         link::PathLook look;
         bool was_there{};  ///< from the start
         bool asked{};
         std::string serial{};
+        std::uint32_t baud{};
     };
 
     Lidar* owner_of(const std::string& serial);
+    Lidar* vacant_place();
     void take(Lidar& lidar, const std::string& serial);
-    void move(Lidar& lidar, const std::string& path);
+    void move(Lidar& lidar, const std::string& path, std::uint32_t baud = 0);
+    void fill(Lidar& vacant, const std::string& path, const Known& newcomer);
     [[nodiscard]] bool is_taken(const std::string& node) const;
     [[nodiscard]] bool any_sought() const;
     [[nodiscard]] bool any_sought_from_start() const;
     [[nodiscard]] std::vector<std::uint32_t> sought_bauds() const;
-    void answered(const std::string& path, const std::string& serial);
+    void answered(const std::string& path, const Known& known);
 
     boost::asio::awaitable<void> search();
     boost::asio::awaitable<void> ask(std::string path, Known known);

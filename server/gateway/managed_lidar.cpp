@@ -26,7 +26,9 @@ device::Port device_port(LidarPort& port) {
         .open = [&port](std::uint32_t baud) { return port.open(baud); },
         .wait_for_change = [&port](std::chrono::steady_clock::time_point then
                            ) { return port.wait_for_change(then); },
-        .is_it = [&port](const protocol::DeviceInfo& info) { return port.is_it(info); }};
+        .is_it = [&port](const protocol::DeviceInfo& info) { return port.is_it(info); },
+        .baud_hint = [&port] { return port.baud_hint(); },
+        .has_moved = [&port] { return port.has_moved(); }};
 }
 
 }  // namespace
@@ -137,7 +139,7 @@ asio::awaitable<void> ManagedLidar::obey_demand(std::chrono::seconds patience) {
 void ManagedLidar::on_state(const device::DeviceState& state) {
     auto snapshot = std::make_shared<hub::LidarSnapshot>();
     snapshot->number = place_.number;
-    follow_port();
+    follow_port(state.info);
     snapshot->port_name = place_.port_name;
     snapshot->url = place_.url;
     snapshot->is_virtual = place_.is_virtual;
@@ -150,13 +152,17 @@ void ManagedLidar::on_state(const device::DeviceState& state) {
     hub_.publish(hub::StateNews{snapshot_, stream::state_message(*snapshot_)});
 }
 
-/// Names the port where the lidar is now, if it has moved.
-void ManagedLidar::follow_port() {
+/// Names the port where the lidar is now, if it has moved. One that takes a stand-in's place is
+/// told of once it is identified: until then all that is known is the stand-in's.
+void ManagedLidar::follow_port(const std::optional<protocol::DeviceInfo>& info) {
     const auto path = place_.port->path();
-    if (path == path_) {
+    if (path == path_ ||
+        (place_.is_stand_in && (!info || protocol::serial_text(info->serial) == named_for_))) {
         return;
     }
     path_ = path;
+    place_.is_virtual = false;
+    place_.is_stand_in = false;
     const auto parameters = place_.url.find('?');
     place_.url.replace(0, std::min(parameters, place_.url.size()), path);
     place_.port_name = link::short_name(place_.port->way());

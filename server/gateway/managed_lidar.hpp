@@ -64,7 +64,7 @@ public:
 
 private:
     void on_state(const device::DeviceState& state) override;
-    void follow_port();
+    void follow_port(const std::optional<protocol::DeviceInfo>& info);
     void remember(const device::DeviceState& state);
     void claim_id(const std::optional<protocol::DeviceInfo>& info);
     void on_sweep(device::CapturedSweep sweep) override;

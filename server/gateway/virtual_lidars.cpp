@@ -39,11 +39,35 @@ Result<std::string, Problem> VirtualLidars::add(
     if (!created) {
         return created.error();
     }
-    auto& lidar = *lidars_.emplace_back(std::move(*created));
+    auto& lidar = **created;
     // Read before it runs: on its thread it may be plugged in elsewhere.
     auto port = options.link.empty() ? lidar.port() : options.link;
-    boost::asio::post(worker_->executor(), [this, &lidar] { worker_->tasks().spawn(lidar.run()); });
+    {
+        const std::scoped_lock lock(mutex_);
+        lidars_.insert_or_assign(number, std::move(*created));
+    }
+    boost::asio::post(worker_->executor(), [this, number, &lidar] {
+        worker_->tasks().spawn(play(number, lidar));
+    });
     return port;
+}
+
+/// Its life; its port goes with it.
+boost::asio::awaitable<void>
+VirtualLidars::play(std::uint32_t number, virtual_lidar::VirtualLidar& lidar) {
+    co_await lidar.run();
+    const std::scoped_lock lock(mutex_);
+    lidars_.erase(number);
+}
+
+void VirtualLidars::end(std::uint32_t number) {
+    boost::asio::post(worker_->executor(), [this, number] {
+        const std::scoped_lock lock(mutex_);
+        const auto found = lidars_.find(number);
+        if (found != lidars_.end()) {
+            found->second->stop();
+        }
+    });
 }
 
 // A path that stays the same, in a folder that nobody else may write to.

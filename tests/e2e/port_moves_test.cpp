@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -26,10 +27,10 @@ protected:
     /// that stays may be one to somebody else's terminal by the next moment.)
     class Lidar {
     public:
-        Lidar(const std::string& link, const std::string& serial)
+        Lidar(const std::string& link, const std::string& serial, const std::string& model)
             : link_(link)
             , process_(std::make_unique<VirtualLidarProcess>(
-                  std::vector<std::string>{"--link", link, "--serial", serial}
+                  std::vector<std::string>{"--link", link, "--serial", serial, "--model", model}
               )) {}
         ~Lidar() {
             process_.reset();  // killed
@@ -44,8 +45,9 @@ protected:
         std::unique_ptr<VirtualLidarProcess> process_;
     };
 
-    std::unique_ptr<Lidar> plug(const std::string& link, const std::string& serial) {
-        return std::make_unique<Lidar>(scratch.file(link), serial);
+    std::unique_ptr<Lidar>
+    plug(const std::string& link, const std::string& serial, const std::string& model = "a1m8") {
+        return std::make_unique<Lidar>(scratch.file(link), serial, model);
     }
     /// Has a gateway know the lidar that is at that port, where its user names it.
     void meet_in_an_earlier_run(const std::string& link) {
@@ -236,6 +238,55 @@ TEST_F(PortMoves, AnotherLidarTakesThePlaceOfOneThatIsNowhereSinceTheGatewayWasO
     Subscriber client("tcp://" + gateway.tcp);
     client.subscribe();
     client.wait_for_state(v1::Lidar::SCANNING);
+}
+
+TEST_F(PortMoves, ALidarThatIsPluggedInTakesThePlaceOfTheVirtualOne) {
+    GatewayProcess gateway({"--discover", scratch.file("*"), "--log-level", "debug"});
+    Subscriber client("tcp://" + gateway.tcp);
+    client.subscribe();
+    const auto stand_in = client.wait_for_state(v1::Lidar::SCANNING);
+    EXPECT_TRUE(stand_in.is_virtual() && stand_in.is_stand_in());
+    const auto before = client.next_sweep().sequence;
+    const auto lidar = plug("new", serial_a, "s2");
+    const auto real = wait_for(client, "A0A0A0A0", scratch.file("new"));
+    EXPECT_FALSE(real.is_virtual() || real.is_stand_in());
+    EXPECT_EQ(real.device().serial_number(), serial_a);
+    const auto after = client.next_sweep();
+    EXPECT_GT(after.sequence, before);
+    EXPECT_EQ(after.lidar, "A0A0A0A0");
+    const auto told = http(gateway.http, "GET", "/api/v1/lidars/A0A0A0A0").body;
+    EXPECT_THAT(told, HasSubstr(scratch.file("new")));
+    EXPECT_THAT(told, testing::ContainsRegex("\"isVirtual\": ?false"));
+    EXPECT_THAT(told, testing::ContainsRegex("\"isStandIn\": ?false"));
+    gateway.process.signal(SIGTERM);
+    EXPECT_EQ(gateway.process.wait(), 0);
+    const auto log = gateway.process.rest_of_log();
+    EXPECT_THAT(
+        log,
+        HasSubstr(
+            "lidar A0A0A0A0 at " + scratch.file("new") + " takes the place of the virtual one"
+        )
+    );
+    EXPECT_THAT(log, testing::ContainsRegex("virtual-a1m8\\] /dev/pts/[0-9]+ stopped"));
+    EXPECT_THAT(log, HasSubstr("looking for it at 1000000, 115200"));
+    EXPECT_THAT(log, testing::Not(HasSubstr("the device is gone"))) << "it was not lost";
+}
+
+TEST_F(PortMoves, OnlyOneLidarTakesThePlaceOfTheVirtualOneAndKeepsIt) {
+    GatewayProcess gateway({"--discover", scratch.file("*")});
+    Subscriber client("tcp://" + gateway.tcp);
+    client.subscribe();
+    auto lidar = plug("one", serial_a);
+    wait_for(client, "A0A0A0A0", scratch.file("one"));
+    const auto second = plug("two", serial_b);
+    lidar.reset();
+    client.next([](const auto& message) {
+        return message.has_lidar() && message.lidar().state() != v1::Lidar::SCANNING;
+    });
+    lidar = plug("three", serial_a);
+    wait_for(client, "A0A0A0A0", scratch.file("three"));
+    Subscriber next("tcp://" + gateway.tcp);
+    EXPECT_EQ(next.next().hello().lidars_size(), 1);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include <array>
 #include <chrono>
+#include <fstream>
 #include <future>
 #include <iostream>
 #include <memory>
@@ -117,6 +118,14 @@ TEST_F(LidarPortsTest, LeaveALidarInHandWhereItIsWhateverAnEarlierRunKnew) {
     EXPECT_EQ(moves, (std::array{0, 0}));
 }
 
+TEST_F(LidarPortsTest, LetAStandInBeWhoeverItSaysItIs) {
+    ports.add_vacant(1, port(1), [this] { ++moves.at(0); });
+    EXPECT_TRUE(answers(1, "V"));
+    ASSERT_TRUE(answers(2, "B"));
+    EXPECT_TRUE(answers(1, "W"));
+    EXPECT_EQ(moves, (std::array{0, 0}));
+}
+
 TEST_F(LidarPortsTest, TellTwoLidarsOfOneSerialNumberApart) {
     ASSERT_TRUE(answers(1, "0"));
     EXPECT_TRUE(answers(2, "0")) << "the other one is in hand";
@@ -163,8 +172,13 @@ protected:
         );
         ports->seek(1, 115200);
     }
+    /// Lidar 1 is a stand-in.
+    void wait_for_anybody() {
+        ports->add_vacant(1, path("virtual"), [this] { moved.set_value(); });
+    }
     std::string found_at() {
         const auto found = moved.get_future().wait_for(std::chrono::seconds(20));
+        moved = {};
         return found == std::future_status::ready ? ports->path_of(1) : "nowhere";
     }
 
@@ -213,6 +227,53 @@ TEST_F(LidarSearchTest, DoesNotAskAtThePortOfAnotherLidar) {
     ports->add(2, path("there"), [] {});
     seek(RememberedLidar{ours, 115200});
     plug("new", ours);
+    EXPECT_EQ(found_at(), path("new"));
+}
+
+TEST_F(LidarSearchTest, GivesAVacantPlaceToALidarThatNewlyAppeared) {
+    start();
+    wait_for_anybody();
+    plug("new", ours);
+    EXPECT_EQ(found_at(), path("new"));
+    EXPECT_EQ(ports->baud_at_path(1), 115200U);
+    EXPECT_TRUE(ports->is_it(1, path("new"), ours));
+}
+
+TEST_F(LidarSearchTest, GivesAVacantPlaceToALidarThatDidNotAnswerYetWhenAllWereAsked) {
+    plug("there", ours);
+    start();
+    wait_for_anybody();
+    EXPECT_EQ(found_at(), path("there"));
+}
+
+TEST_F(LidarSearchTest, GivesAVacantPlaceToAnotherIfTheFirstIsGoneBeforeItIsMet) {
+    start();
+    wait_for_anybody();
+    plug("new", ours);
+    ASSERT_EQ(found_at(), path("new"));
+    ports->seek(1, 115200);
+    plug("next", other);
+    EXPECT_EQ(found_at(), path("next"));
+    EXPECT_TRUE(ports->is_it(1, path("next"), other));
+}
+
+TEST_F(LidarSearchTest, DoesNotGiveAVacantPlaceToALidarOfAnotherPlace) {
+    start();
+    ports->add(2, path("gone"), [] {});
+    ASSERT_TRUE(ports->is_it(2, path("gone"), ours));
+    wait_for_anybody();
+    plug("elsewhere", ours);
+    plug("new", other);
+    EXPECT_EQ(found_at(), path("new"));
+}
+
+TEST_F(LidarSearchTest, LeavesAPortAloneThatSomebodyHasOpen) {
+    plug("in use", ours);
+    std::fstream user(path("in use"));
+    ASSERT_TRUE(user.is_open());
+    start();
+    wait_for_anybody();
+    plug("new", other);
     EXPECT_EQ(found_at(), path("new"));
 }
 
