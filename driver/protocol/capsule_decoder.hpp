@@ -48,11 +48,10 @@ struct FinishedCapsule {
 ///    own tail may be missing;
 ///  - a packet lost without a trace shows as a sudden multiple of the steady rate and is treated
 ///    likewise, where the vendor stretches the capsule before it over the gap;
-///  - after a pause in which the scanner may have turned by half a turn or more, or during which
-///  the
-///    rate was not steady, nobody knows how far it turned: the capsule before the pause is given
-///    up. It is no pause if what was sent meanwhile came together, late, or if the capsule before
-///    came after one at least half as long: then the scanner is slower than it says.
+///  - after a pause in which the scanner may have turned by half a turn or more, or before which
+///    the rate was not steady, nobody knows how far it turned: the capsule before the pause is
+///    given up. It is no pause if what was sent meanwhile came together, late, or if the capsule
+///    before came after one at least half as long: then the scanner is slower than it says.
 ///
 /// `Format` says what the bytes of an answer type mean:
 ///  - `type`, `samples_per_capsule`, `start_word_at`;
@@ -92,7 +91,7 @@ private:
     void restart(Decoded& out);
     void finish_held(CapsuleBytes next, AngleQ6 next_start, SampleTime arrival, Decoded& out);
     [[nodiscard]] std::int64_t pause_before(SampleTime arrival) const;
-    [[nodiscard]] bool hides_turns(std::int64_t pause, std::int32_t turned);
+    [[nodiscard]] bool hides_turns(std::int64_t pause, std::int32_t turned) const;
     void decode_held(std::int32_t turned_q8, CapsuleBytes next, bool next_follows, Decoded& out);
 
     SampleTiming timing_;
@@ -189,7 +188,9 @@ void CapsuleDecoder<Format>::finish_held(
     Decoded& out
 ) {
     const auto turned = turned_q8(held_->start, next_start);
-    if (hides_turns(pause_before(arrival), turned)) {
+    const auto pause = pause_before(arrival);
+    const bool is_sudden = pause > 2 * std::exchange(paused_, pause);
+    if (is_sudden && hides_turns(pause, turned)) {
         // At least this one; of how long the pause was, the times of what follows tell.
         out.events.push_back({out.samples.size(), DecodeEventKind::packets_lost});
         rate_.forget();  // meanwhile, the speed may have become another
@@ -226,11 +227,7 @@ std::int64_t CapsuleDecoder<Format>::pause_before(SampleTime arrival) const {
 /// Whether a pause of so many packets makes it unknown by how much the scanner turned meanwhile: by
 /// `turned`, or by that and any number of whole turns.
 template <class Format>
-bool CapsuleDecoder<Format>::hides_turns(std::int64_t pause, std::int32_t turned) {
-    const auto one_before = std::exchange(paused_, pause);
-    if (pause <= 2 * one_before) {
-        return false;
-    }
+bool CapsuleDecoder<Format>::hides_turns(std::int64_t pause, std::int32_t turned) const {
     const auto times = rate_.packet_times(turned);
     return !times || (pause + 1) * turned / *times >= turn_q8 / 2;
 }
