@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <csignal>
 #include <deque>
 #include <fcntl.h>
@@ -146,6 +147,19 @@ std::string Gateway::log_tail() const {
 int Gateway::stop() {
     process_->signal(SIGTERM);
     return process_->wait();
+}
+
+Rig::Rig(std::size_t count) {
+    constexpr std::array models{"a1m8", "c1", "s2", "a3m1"};
+    std::vector<std::string> links;
+    for (std::size_t i = 0; i < count; ++i) {
+        lidars.push_back(std::make_unique<Lidar>(scratch, models.at(i % models.size()), i));
+        links.push_back(lidars.back()->link());
+    }
+    for (const auto& lidar : lidars) {
+        lidar->wait_until_ready();
+    }
+    gateway = std::make_unique<Gateway>(scratch, links);
 }
 
 }  // namespace sweepcast::chaos

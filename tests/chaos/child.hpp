@@ -62,4 +62,14 @@ private:
     std::string tcp_;
 };
 
+/// Virtual lidars of four families in turn, and a gateway of all of them.
+struct Rig {
+    /// Starts them, and waits until the lidars take commands and the gateway listens.
+    explicit Rig(std::size_t count);
+
+    test::ScratchDirectory scratch;
+    std::vector<std::unique_ptr<Lidar>> lidars;
+    std::unique_ptr<Gateway> gateway;
+};
+
 }  // namespace sweepcast::chaos

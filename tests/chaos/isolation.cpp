@@ -9,16 +9,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
-#include <memory>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
+#include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace sweepcast::chaos {
@@ -32,86 +32,80 @@ struct Options {
     double fault_s{2};
 };
 
-constexpr std::array models{"a1m8", "c1", "s2", "a3m1"};
-
-/// Asks the gateway for its lidars again and again, in a thread of its own.
+/// Asks the gateway for its lidars fifty times a second, in a thread of its own.
 class HttpClient {
 public:
     explicit HttpClient(std::string address)
         : address_(std::move(address))
-        , thread_([this] { run(); }) {}
-    ~HttpClient() {
-        stopped_ = true;
-        thread_.join();
-    }
-    HttpClient(const HttpClient&) = delete;
-    HttpClient& operator=(const HttpClient&) = delete;
+        , thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
-    /// Ends it; how long each answer took, the quickest first.
+    /// Ends it; how many milliseconds each answer took, the quickest first. Throws if one did not
+    /// come.
     std::vector<double> finish() {
-        stopped_ = true;
+        thread_.request_stop();
         thread_.join();
-        thread_ = std::thread([] {});
+        if (!failure_.empty()) {
+            throw std::runtime_error("HTTP: " + failure_);
+        }
         std::ranges::sort(took_ms_);
-        return took_ms_;
+        return std::move(took_ms_);
     }
 
 private:
-    void run() {
+    void run(const std::stop_token& stop) {
         bench::Beat beat(50);
-        while (!stopped_) {
+        while (!stop.stop_requested() && failure_.empty()) {
             beat.wait();
-            const auto begin = Clock::now();
-            const auto answer = test::http(address_, "GET", "/api/v1/lidars");
-            took_ms_.push_back(
-                answer.status == 200 ? Milliseconds(Clock::now() - begin).count() : 1e9
-            );
+            ask();
         }
     }
 
+    void ask() {
+        const auto begin = Clock::now();
+        try {
+            const auto answer = test::http(address_, "GET", "/api/v1/lidars");
+            if (answer.status != 200) {
+                failure_ = fmt::format("the status was {}", answer.status);
+            }
+        } catch (const std::exception& failure) {
+            failure_ = failure.what();
+        }
+        took_ms_.push_back(Milliseconds(Clock::now() - begin).count());
+    }
+
     std::string address_;
-    std::atomic<bool> stopped_{};
+    std::string failure_;
     std::vector<double> took_ms_;
-    std::thread thread_;
+    std::jthread thread_;
 };
 
 class Isolation {
 public:
-    explicit Isolation(const Options& options) : options_(options) {
-        std::vector<std::string> links;
-        for (std::size_t i = 0; i < options.lidars; ++i) {
-            lidars_.push_back(std::make_unique<Lidar>(scratch_, models.at(i % models.size()), i));
-            links.push_back(lidars_.back()->link());
-        }
-        for (const auto& lidar : lidars_) {
-            lidar->wait_until_ready();
-        }
-        gateway_ = std::make_unique<Gateway>(scratch_, links);
-        watcher_ = std::make_unique<Watcher>(gateway_->tcp(), lidars_);
-        watcher_->set_damaged(0, true);
+    explicit Isolation(const Options& options) : options_(options), rig_(options.lidars) {
+        watcher_.set_damaged(0, true);
     }
 
     void run() {
         const auto all_scan = [this] {
-            for (std::size_t i = 0; i < lidars_.size(); ++i) {
-                if (watcher_->seen(i).sweeps < 5) {
+            for (std::size_t i = 0; i < rig_.lidars.size(); ++i) {
+                if (watcher_.seen(i).sweeps < 5) {
                     return false;
                 }
             }
             return true;
         };
-        if (!watcher_->wait_until(Clock::now() + 30s, all_scan)) {
+        if (!watcher_.wait_until(Clock::now() + 30s, all_scan)) {
             throw std::runtime_error("not all of them scan");
         }
-        for (std::size_t i = 0; i < lidars_.size(); ++i) {
-            first_.push_back(watcher_->seen(i));
+        for (std::size_t i = 0; i < rig_.lidars.size(); ++i) {
+            first_.push_back(watcher_.seen(i));
         }
-        HttpClient http(gateway_->http());
+        HttpClient http(rig_.gateway->http());
         for (const auto& fault : faults) {
             suffer(fault);
         }
         // What was measured last is compared by then.
-        watcher_->wait_until(Clock::now() + 6s);
+        watcher_.wait_until(Clock::now() + 6s);
         check("the end");
         print(http.finish());
     }
@@ -121,22 +115,22 @@ private:
         const auto lasts = std::chrono::duration_cast<Clock::duration>(
             std::chrono::duration<double>(options_.fault_s)
         );
-        (void)lidars_.front()->tell(std::string(fault.command));  // some need a scan that runs
-        watcher_->wait_until(Clock::now() + lasts);
+        (void)rig_.lidars.front()->tell(std::string(fault.command));  // some need a scan that runs
+        watcher_.wait_until(Clock::now() + lasts);
         if (!fault.ends_with.empty()) {
-            (void)lidars_.front()->tell(std::string(fault.ends_with));
+            (void)rig_.lidars.front()->tell(std::string(fault.ends_with));
         }
         check(fault.command);
-        if (watcher_->seen(0).lidar.state() == v1::Lidar::FAILED) {
-            (void)lidars_.front()->tell("reboot");
+        if (watcher_.seen(0).lidar.state() == v1::Lidar::FAILED) {
+            (void)rig_.lidars.front()->tell("reboot");
         }
-        watcher_->wait_until(Clock::now() + lasts / 2);
+        watcher_.wait_until(Clock::now() + lasts / 2);
     }
 
     /// That the others scan on as if nothing was.
     void check(std::string_view after) const {
-        for (std::size_t i = 1; i < lidars_.size(); ++i) {
-            const auto seen = watcher_->seen(i);
+        for (std::size_t i = 1; i < rig_.lidars.size(); ++i) {
+            const auto seen = watcher_.seen(i);
             const auto& then = first_[i].lidar;
             const bool same =
                 seen.skipped == 0 && seen.lidar.state_changes() == then.state_changes() &&
@@ -146,13 +140,13 @@ private:
                 throw std::runtime_error(fmt::format(
                     "after {}: {} suffers, too: {} sweeps skipped; {}",
                     after,
-                    lidars_[i]->link(),
+                    rig_.lidars[i]->link(),
                     seen.skipped,
                     seen.lidar.ShortDebugString()
                 ));
             }
         }
-        const auto totals = watcher_->totals();
+        const auto totals = watcher_.totals();
         if (totals.sweeps_with_holes + totals.sweeps_not_found + totals.dropped > 0) {
             throw std::runtime_error(fmt::format(
                 "after {}: {} sweeps of the others have holes, {} were not found, {} dropped",
@@ -165,13 +159,13 @@ private:
     }
 
     void print(const std::vector<double>& took_ms) const {
-        const auto totals = watcher_->totals();
+        const auto totals = watcher_.totals();
         fmt::print(
             "{} lidars, the first of which suffered {} faults: the others' {} sweeps came without "
             "a "
             "gap, all {} samples as measured, none lost; HTTP: {} answers, median {:.1f} ms, 99 % "
             "{:.1f} ms, worst {:.1f} ms\n",
-            lidars_.size(),
+            rig_.lidars.size(),
             faults.size(),
             totals.sweeps_compared,
             totals.samples_compared,
@@ -183,10 +177,8 @@ private:
     }
 
     Options options_;
-    test::ScratchDirectory scratch_;
-    std::vector<std::unique_ptr<Lidar>> lidars_;
-    std::unique_ptr<Gateway> gateway_;
-    std::unique_ptr<Watcher> watcher_;
+    Rig rig_;
+    Watcher watcher_{rig_.gateway->tcp(), rig_.lidars};
     std::vector<Seen> first_;
 };
 

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +15,6 @@
 #include <exception>
 #include <iterator>
 #include <map>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -33,8 +31,6 @@ struct Options {
     double report_s{60};
     std::size_t growth_kb{2048};
 };
-
-constexpr std::array models{"a1m8", "a3m1", "c1", "s2"};
 
 Clock::duration seconds(double count) {
     return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(count));
@@ -59,21 +55,10 @@ Milliseconds median(std::vector<Milliseconds> ages) {
 
 class Soak {
 public:
-    explicit Soak(const Options& options) : options_(options) {
-        std::vector<std::string> links;
-        for (std::size_t i = 0; i < models.size(); ++i) {
-            lidars_.push_back(std::make_unique<Lidar>(scratch_, models.at(i), i));
-            links.push_back(lidars_.back()->link());
-        }
-        for (const auto& lidar : lidars_) {
-            lidar->wait_until_ready();
-        }
-        gateway_ = std::make_unique<Gateway>(scratch_, links);
-        watcher_ = std::make_unique<Watcher>(gateway_->tcp(), lidars_);
-    }
+    explicit Soak(const Options& options) : options_(options) {}
 
     void run() {
-        test::Subscriber client("ws://" + gateway_->http() + "/api/v1/stream");
+        test::Subscriber client("ws://" + rig_.gateway->http() + "/api/v1/stream");
         client.subscribe();
         fmt::print(
             "{:>8} {:>10} {:>12} {:>10} {:>8}  {}\n",
@@ -120,9 +105,9 @@ private:
     Report take_report(test::Subscriber& client, Clock::time_point due, double minutes) {
         Report report;
         report.ages = ages_until(client, due);
-        report.resident_kb = gateway_->resident_bytes() / 1024;
-        report.descriptors = gateway_->descriptors();
-        const auto totals = watcher_->totals();
+        report.resident_kb = rig_.gateway->resident_bytes() / 1024;
+        report.descriptors = rig_.gateway->descriptors();
+        const auto totals = watcher_.totals();
         std::string ages;
         for (const auto& [lidar, age] : report.ages) {
             ages += fmt::format(" {:.2f}", age.count());
@@ -141,15 +126,15 @@ private:
     }
 
     void judge() {
-        watcher_->wait_until(Clock::now() + 1s);  // what broke throws
-        const auto totals = watcher_->totals();
+        watcher_.wait_until(Clock::now() + 1s);  // what broke throws
+        const auto totals = watcher_.totals();
         fmt::print(
             "{} lidars for {:.0f} min: RSS {} kB then, {} kB now, {} kB at most; descriptors {} "
             "and {}; {} sweeps, {} "
             "skipped; {} samples compared, all as measured; the samples' times against the wall "
             "clock: at most {:.2f} ms "
             "from where they were\n",
-            lidars_.size(),
+            rig_.lidars.size(),
             options_.minutes,
             first_.resident_kb,
             last_.resident_kb,
@@ -173,10 +158,8 @@ private:
     }
 
     Options options_;
-    test::ScratchDirectory scratch_;
-    std::vector<std::unique_ptr<Lidar>> lidars_;
-    std::unique_ptr<Gateway> gateway_;
-    std::unique_ptr<Watcher> watcher_;
+    Rig rig_{4};
+    Watcher watcher_{rig_.gateway->tcp(), rig_.lidars};
     Report first_;
     Report last_;
     std::size_t most_resident_kb_{};
