@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -49,9 +50,11 @@ struct FinishedCapsule {
 ///  - a packet lost without a trace shows as a sudden multiple of the steady rate and is treated
 ///    likewise, where the vendor stretches the capsule before it over the gap;
 ///  - after a pause in which the scanner may have turned by half a turn or more, or before which
-///    the rate was not steady, nobody knows how far it turned: the capsule before the pause is
-///    given up. It is no pause if what was sent meanwhile came together, late, or if the capsule
-///    before came after one at least half as long: then the scanner is slower than it says.
+///    the rate was not steady (if the pause is longer than hosts and adapters are late), nobody
+///    knows how far it turned: the capsule before the pause is given up. Bytes that a line
+///    delivers late have the times at which it could have had them, so they make no pause; those
+///    of a network may. It is none either if the capsule before came after one at least half as
+///    long: then the scanner is slower than it says.
 ///
 /// `Format` says what the bytes of an answer type mean:
 ///  - `type`, `samples_per_capsule`, `start_word_at`;
@@ -67,12 +70,7 @@ public:
 
     /// Appends to `out` what `bytes` complete.
     void push(std::span<const std::uint8_t> bytes, const Arrival& arrival, Decoded& out) {
-        waiting_ += bytes.size();
-        backlog_.feed(bytes, arrival, [&](const TimedBytes& input) {
-            const auto used = step(input, out);
-            waiting_ -= used;
-            return used;
-        });
+        backlog_.feed(bytes, arrival, [&](const TimedBytes& input) { return step(input, out); });
     }
 
 private:
@@ -90,6 +88,9 @@ private:
     void accept(CapsuleBytes bytes, SampleTime arrival, Decoded& out);
     void restart(Decoded& out);
     void finish_held(CapsuleBytes next, AngleQ6 next_start, SampleTime arrival, Decoded& out);
+    [[nodiscard]] std::chrono::microseconds packet_time() const {
+        return timing_.sample_duration() * std::int64_t{Format::samples_per_capsule};
+    }
     [[nodiscard]] std::int64_t pause_before(SampleTime arrival) const;
     [[nodiscard]] bool hides_turns(std::int64_t pause, std::int32_t turned) const;
     void decode_held(std::int32_t turned_q8, CapsuleBytes next, bool next_follows, Decoded& out);
@@ -101,7 +102,6 @@ private:
     TurnRate rate_;
     std::optional<Held> held_;
     std::optional<LineDamage> damage_;
-    std::size_t waiting_{};  ///< bytes that came and were not dealt with
     std::int64_t paused_{};  ///< for how many packets, before the capsule held
 };
 
@@ -211,23 +211,25 @@ void CapsuleDecoder<Format>::finish_held(
 }
 
 /// How many packets did not come between the one held and the one that is here since `arrival`, by
-/// the time between the two: the nearest whole number, 0 if the time of a packet is not known. What
-/// came together with it was on its way meanwhile.
+/// the time between the two: the nearest whole number, 0 if the time of a packet is not known.
 template <class Format>
 std::int64_t CapsuleDecoder<Format>::pause_before(SampleTime arrival) const {
-    const auto packet_time = timing_.sample_duration() * std::int64_t{Format::samples_per_capsule};
-    if (packet_time.count() <= 0) {
+    if (packet_time().count() <= 0) {
         return 0;
     }
-    const auto times = (arrival - held_->arrival + packet_time / 2) / packet_time;
-    const auto came_together = static_cast<std::int64_t>(waiting_ / capsule_size);
-    return std::max<std::int64_t>(times - came_together, 0);
+    const auto times = (arrival - held_->arrival + packet_time() / 2) / packet_time();
+    return std::max<std::int64_t>(times - 1, 0);
 }
 
 /// Whether a pause of so many packets makes it unknown by how much the scanner turned meanwhile: by
 /// `turned`, or by that and any number of whole turns.
 template <class Format>
 bool CapsuleDecoder<Format>::hides_turns(std::int64_t pause, std::int32_t turned) const {
+    if (!rate_.steady()) {
+        // The latency timer of USB adapters (protocol.md 13.20), and some.
+        constexpr std::chrono::milliseconds may_be_late{20};
+        return pause * packet_time() > may_be_late;
+    }
     const auto times = rate_.packet_times(turned);
     return !times || (pause + 1) * turned / *times >= turn_q8 / 2;
 }

@@ -21,12 +21,13 @@ public:
     /// within 1/8 of a packet's turn of a whole number of packets.
     [[nodiscard]] std::optional<std::int32_t> packet_times(std::int32_t turned) const;
 
+    /// Whether the rate is known.
+    [[nodiscard]] bool steady() const { return agreements_ >= 2; }
+
     /// Starts over: the scanner did.
     void forget() { *this = {}; }
 
 private:
-    [[nodiscard]] bool steady() const { return agreements_ >= 2; }
-
     std::int32_t rate_{};  ///< the last one believed
     int agreements_{};     ///< how often it was confirmed, counted up to 2
     std::int32_t

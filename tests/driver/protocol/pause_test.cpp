@@ -58,7 +58,7 @@ protected:
         }
         const auto last = static_cast<std::int64_t>(index + together);
         now_ = std::max(now_, SampleTime{1s + last * capsule_time + late});
-        decoder_.push(block, {now_, 0ns}, decoded_);
+        decoder_.push(block, {now_, per_byte_}, decoded_);
     }
 
     void receive_clean(std::size_t from, std::size_t count) {
@@ -118,6 +118,7 @@ protected:
     }
 
     SampleTime now_{};
+    std::chrono::nanoseconds per_byte_{86'806};  // at 115200 baud
     std::vector<Capsule> capsules_;
     Decoder decoder_ = make_decoder(AnswerType::express, {.sample_duration = sample_duration});
     Decoded decoded_;
@@ -172,6 +173,15 @@ TEST_F(PauseTest, CapsulesThatComeLateButTogetherAreAllDecoded) {
     EXPECT_EQ(told_lost(), 0U);
 }
 
+TEST_F(PauseTest, OnANetworkCapsulesThatComeLateCostOneAtMost) {
+    per_byte_ = 0ns;
+    receive_clean(0, clean);
+    receive(clean, 0us, 40);
+    receive_clean(clean + 40, clean);
+    expect_only_the_truth((2 * clean + 38) * samples_per_capsule);
+    EXPECT_EQ(told_lost(), 1U);
+}
+
 TEST_F(PauseTest, AnAdapterThatDeliversInBurstsLosesNothing) {
     for (std::size_t i = 0; i < 160; i += 16) {
         receive(i, 0us, 16);
@@ -185,6 +195,14 @@ TEST_F(PauseTest, AHostThatIsLateNowAndThenLosesNothing) {
         receive(i, i % 11 == 0 ? static_cast<std::int64_t>(i % 5) * capsule_time : 0us);
     }
     expect_only_the_truth(159 * samples_per_capsule);
+}
+
+TEST_F(PauseTest, AHostThatIsLateBeforeTheSpeedIsKnownLosesNothing) {
+    receive(0);
+    receive(1, 2 * capsule_time);
+    receive_clean(2, clean);
+    expect_only_the_truth((clean + 1) * samples_per_capsule);
+    EXPECT_EQ(told_lost(), 0U);
 }
 
 TEST_F(PauseTest, AScannerSlowerThanItSaysIsDecoded) {
