@@ -9,6 +9,8 @@
 #include "driver/protocol/sample_timing.hpp"
 #include "driver/protocol/turn_rate.hpp"
 
+#include <boost/container/static_vector.hpp>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -54,7 +56,10 @@ struct FinishedCapsule {
 ///    knows how far it turned: the capsule before the pause is given up. Bytes that a line
 ///    delivers late have the times at which it could have had them, so they make no pause; those
 ///    of a network may. It is none either if the capsule before came after one at least half as
-///    long: then the scanner is slower than it says.
+///    long: then the scanner is slower than it says;
+///  - if the turn fits no rate known and the next capsule came late, a packet may be missing, or
+///    the host was late: the capsule waits, and those after it, until two turns in a row agree and
+///    tell the rate. One that is in doubt then, or after four more, is given up.
 ///
 /// `Format` says what the bytes of an answer type mean:
 ///  - `type`, `samples_per_capsule`, `start_word_at`;
@@ -78,31 +83,48 @@ private:
     using CapsuleBytes = std::span<const std::uint8_t, capsule_size>;
 
     struct Held {
-        std::array<std::uint8_t, capsule_size> bytes{};
+        std::array<std::uint8_t, capsule_size> bytes;
         AngleQ6 start;
-        SampleTime arrival{};
+        SampleTime arrival;
+        std::int32_t turned_q8{};  ///< up to the next one
+        bool next_is_late{};       ///< so late that one may be missing before it
+        /// In how many packets' time it turned so far: nothing while in doubt, 0 if given up.
+        std::optional<std::int32_t> packets{};
     };
+    /// The first may be in doubt, the last waits for the next.
+    static constexpr std::size_t most_held = 6;
 
     std::size_t step(const TimedBytes& input, Decoded& out);
     std::size_t search(CapsuleBytes bytes, Decoded& out);
     void accept(CapsuleBytes bytes, SampleTime arrival, Decoded& out);
     void restart(Decoded& out);
-    void finish_held(CapsuleBytes next, AngleQ6 next_start, SampleTime arrival, Decoded& out);
+    void follow(CapsuleBytes next, AngleQ6 next_start, SampleTime arrival, Decoded& out);
+    void finish_before_damage(CapsuleBytes next, std::int32_t turned_q8, Decoded& out);
+    void settle_doubts();
+    void finish_first(Decoded& out);
+    void finish_all_but_last(Decoded& out);
     [[nodiscard]] std::chrono::microseconds packet_time() const {
         return timing_.sample_duration() * std::int64_t{Format::samples_per_capsule};
     }
     [[nodiscard]] std::int64_t pause_before(SampleTime arrival) const;
     [[nodiscard]] bool hides_turns(std::int64_t pause, std::int32_t turned) const;
-    void decode_held(std::int32_t turned_q8, CapsuleBytes next, bool next_follows, Decoded& out);
+    [[nodiscard]] bool is_late(SampleTime arrival) const;
+    void decode(
+        const Held& held,
+        std::int32_t turned_q8,
+        CapsuleBytes next,
+        bool next_follows,
+        Decoded& out
+    );
 
     SampleTiming timing_;
     std::int32_t greatest_turn_q8_;
     Format format_;
     Backlog<2 * capsule_size> backlog_;
     TurnRate rate_;
-    std::optional<Held> held_;
+    boost::container::static_vector<Held, most_held> held_;  ///< in order
     std::optional<LineDamage> damage_;
-    std::int64_t paused_{};  ///< for how many packets, before the capsule held
+    std::int64_t paused_{};  ///< for how many packets, before the latest capsule held
 };
 
 /// Deals with the capsule or the noise at the front of `input`.
@@ -116,6 +138,7 @@ std::size_t CapsuleDecoder<Format>::step(const TimedBytes& input, Decoded& out) 
     const bool intact = intact_capsule(capsule);
     if (!intact) {
         if (!damage_) {
+            finish_all_but_last(out);
             damage_.emplace(capsule_size, opens_capsule(bytes[0], bytes[1]), out);
         }
         return search(capsule, out);
@@ -145,7 +168,7 @@ std::size_t CapsuleDecoder<Format>::search(CapsuleBytes bytes, Decoded& out) {
     return count;
 }
 
-/// Takes an intact capsule: it completes the one held and is held in its place.
+/// Takes an intact capsule: it completes the latest held, and is held in turn.
 template <class Format>
 void CapsuleDecoder<Format>::accept(CapsuleBytes bytes, SampleTime arrival, Decoded& out) {
     if (damage_) {
@@ -155,69 +178,143 @@ void CapsuleDecoder<Format>::accept(CapsuleBytes bytes, SampleTime arrival, Deco
     if (start.restart()) {
         restart(out);
     }
-    if (held_) {
-        finish_held(bytes, start.angle(), arrival, out);
-    } else {
-        held_.emplace();
+    if (held_.empty()) {
         paused_ = 0;
+    } else {
+        follow(bytes, start.angle(), arrival, out);
     }
     damage_.reset();
-    std::copy(bytes.begin(), bytes.end(), held_->bytes.begin());
-    held_->start = start.angle();
-    held_->arrival = arrival;
+    auto& held = held_.emplace_back();
+    std::copy(bytes.begin(), bytes.end(), held.bytes.begin());
+    held.start = start.angle();
+    held.arrival = arrival;
+    if (!held_.front().packets) {
+        settle_doubts();
+    }
+    while (held_.size() > 1 && (held_.front().packets || held_.size() == most_held)) {
+        finish_first(out);
+    }
 }
 
 template <class Format>
 void CapsuleDecoder<Format>::restart(Decoded& out) {
-    if (held_) {
+    if (!held_.empty()) {
+        finish_all_but_last(out);
         out.events.push_back({out.samples.size(), DecodeEventKind::encoder_reset});
     }
     out.events.push_back({out.samples.size(), DecodeEventKind::scan_reset});
-    held_.reset();
+    held_.clear();
     rate_.forget();
     format_.restart();
 }
 
-/// Decodes the capsule held, now that the next one is known, if its share of the turn between is
-/// sure.
+/// Judges how far the scanner turned since the latest capsule held, now that the next one is there.
 template <class Format>
-void CapsuleDecoder<Format>::finish_held(
+void CapsuleDecoder<Format>::follow(
     CapsuleBytes next,
     AngleQ6 next_start,
     SampleTime arrival,
     Decoded& out
 ) {
-    const auto turned = turned_q8(held_->start, next_start);
+    auto& latest = held_.back();
+    const auto turned = turned_q8(latest.start, next_start);
     const auto pause = pause_before(arrival);
     const bool is_sudden = pause > 2 * std::exchange(paused_, pause);
     if (is_sudden && hides_turns(pause, turned)) {
+        finish_all_but_last(out);
         // At least this one; of how long the pause was, the times of what follows tell.
         out.events.push_back({out.samples.size(), DecodeEventKind::packets_lost});
+        held_.clear();
         rate_.forget();  // meanwhile, the speed may have become another
-        return;
-    }
-    const auto times = damage_ ? rate_.packet_times(turned) : rate_.learn(turned);
-    if (!times) {
-        return;
-    }
-    if (!damage_ || *times == 1 || damage_->sync_followed()) {
-        decode_held(turned / *times, next, *times == 1, out);
-    }
-    const auto told = damage_ && damage_->sync_followed() ? 1 : 0;  // as a checksum error
-    if (*times > 1 + told) {
-        const auto lost = static_cast<std::size_t>(*times - 1 - told);
-        out.events.push_back({out.samples.size(), DecodeEventKind::packets_lost, lost});
+    } else if (damage_) {
+        finish_before_damage(next, turned, out);
+    } else {
+        latest.turned_q8 = turned;
+        latest.next_is_late = is_late(arrival);
+        latest.packets = rate_.learn(turned);
+        if (!latest.packets && !latest.next_is_late) {
+            latest.packets = 1;
+        }
     }
 }
 
-/// How many packets did not come between the one held and the one that is here since `arrival`, by
-/// the time between the two: the nearest whole number, 0 if the time of a packet is not known.
+/// Decodes the capsule held, the only one, if its share of the turn up to the next one is sure.
+template <class Format>
+void CapsuleDecoder<Format>::finish_before_damage(
+    CapsuleBytes next,
+    std::int32_t turned,
+    Decoded& out
+) {
+    if (const auto times = rate_.packet_times(turned)) {
+        if (*times == 1 || damage_->sync_followed()) {
+            decode(held_.front(), turned / *times, next, *times == 1, out);
+        }
+        const auto told = damage_->sync_followed() ? 1 : 0;  // as a checksum error
+        if (*times > 1 + told) {
+            const auto lost = static_cast<std::size_t>(*times - 1 - told);
+            out.events.push_back({out.samples.size(), DecodeEventKind::packets_lost, lost});
+        }
+    }
+    held_.clear();
+}
+
+/// Judges all the turns between capsules held by the latest two, if these agree and tell the rate.
+template <class Format>
+void CapsuleDecoder<Format>::settle_doubts() {
+    if (held_.size() < 3) {
+        return;
+    }
+    const auto latest = std::span(held_).last(3);
+    if (latest[0].next_is_late && latest[1].next_is_late) {
+        return;
+    }
+    const auto rate = common_rate(latest[0].turned_q8, latest[1].turned_q8);
+    if (!rate) {
+        return;
+    }
+    for (auto& held : std::span(held_).first(held_.size() - 1)) {
+        const auto usual = held.next_is_late ? 0 : 1;
+        held.packets = packet_times_at(*rate, held.turned_q8).value_or(usual);
+    }
+}
+
+/// Decodes the first capsule held, which another one follows, unless it is given up. One in doubt
+/// still is if the scanner turned less afterwards.
+template <class Format>
+void CapsuleDecoder<Format>::finish_first(Decoded& out) {
+    const auto& first = held_.front();
+    const auto after = std::span(held_).subspan(1, held_.size() - 2);
+    const auto is_one = [&](const Held& then) {
+        return packet_times_at(then.turned_q8, first.turned_q8) == 1;
+    };
+    const auto unknown = !after.empty() && std::ranges::all_of(after, is_one) ? 1 : 0;
+    const auto packets = first.packets.value_or(unknown);
+    if (packets > 0) {
+        decode(first, first.turned_q8 / packets, held_[1].bytes, packets == 1, out);
+    }
+    if (const auto lost = packets > 0 ? packets - 1 : 1; lost > 0) {
+        out.events.push_back(
+            {out.samples.size(), DecodeEventKind::packets_lost, static_cast<std::size_t>(lost)}
+        );
+    }
+    held_.erase(held_.begin());
+}
+
+template <class Format>
+void CapsuleDecoder<Format>::finish_all_but_last(Decoded& out) {
+    while (held_.size() > 1) {
+        finish_first(out);
+    }
+}
+
+/// How many packets did not come between the latest held and the one that is here since `arrival`,
+/// by the time between the two: the nearest whole number, 0 if the time of a packet is not known.
 template <class Format>
 std::int64_t CapsuleDecoder<Format>::pause_before(SampleTime arrival) const {
     if (packet_time().count() <= 0) {
         return 0;
     }
-    const auto times = (arrival - held_->arrival + packet_time() / 2) / packet_time();
+    const auto times = (arrival - held_.back().arrival + packet_time() / 2) / packet_time();
     return std::max<std::int64_t>(times - 1, 0);
 }
 
@@ -234,8 +331,16 @@ bool CapsuleDecoder<Format>::hides_turns(std::int64_t pause, std::int32_t turned
     return !times || (pause + 1) * turned / *times >= turn_q8 / 2;
 }
 
+/// Whether the one that is here since `arrival` came so late that one before it may be missing.
 template <class Format>
-void CapsuleDecoder<Format>::decode_held(
+bool CapsuleDecoder<Format>::is_late(SampleTime arrival) const {
+    return packet_time().count() > 0 &&
+           arrival - held_.back().arrival > packet_time() + packet_time() / 4;
+}
+
+template <class Format>
+void CapsuleDecoder<Format>::decode(
+    const Held& held,
     std::int32_t turned_q8,
     CapsuleBytes next,
     bool next_follows,
@@ -249,12 +354,12 @@ void CapsuleDecoder<Format>::decode_held(
     out.samples.resize(first + count);
     const auto duration = timing_.sample_duration();
     format_.decode(
-        {.bytes = held_->bytes,
+        {.bytes = held.bytes,
          .next = next,
          .next_follows = next_follows,
-         .start = held_->start,
+         .start = held.start,
          .turned_q8 = turned_q8,
-         .first_sample = timing_.last_sample(held_->arrival) - (count - 1) * duration,
+         .first_sample = timing_.last_sample(held.arrival) - (count - 1) * duration,
          .sample_duration = duration},
         out.samples.data() + first
     );

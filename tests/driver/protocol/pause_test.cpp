@@ -165,6 +165,37 @@ TEST_P(SpinUpTest, ALossTurnsNoSampleByMoreThanAnEighthOfACapsule) {
 
 INSTANTIATE_TEST_SUITE_P(UpToFourTurns, SpinUpTest, testing::Range<std::size_t>(1, 61));
 
+/// How many capsules came before the loss, and how many were lost.
+class EarlyLossTest : public PauseTest,
+                      public testing::WithParamInterface<std::tuple<std::size_t, std::size_t>> {};
+
+TEST_P(EarlyLossTest, BeforeTheSpeedIsKnownGivesNoSampleAWrongAngle) {
+    const auto [before, lost] = GetParam();
+    receive_clean(0, before);
+    receive_clean(before + lost, clean);
+    const auto capsules = decoded_.samples.size() / samples_per_capsule;
+    EXPECT_GE(capsules, before + clean - 2);
+    expect_only_the_truth(capsules * samples_per_capsule);
+    EXPECT_GE(told_lost(), 1U);
+}
+
+TEST_P(EarlyLossTest, WithAnotherRightAfterItGivesNoSampleAWrongAngle) {
+    const auto [before, lost] = GetParam();
+    receive_clean(0, before);
+    receive(before + lost);
+    receive_clean(before + 2 * lost + 1, clean);
+    const auto capsules = decoded_.samples.size() / samples_per_capsule;
+    EXPECT_GE(capsules, before + clean - 2);
+    expect_only_the_truth(capsules * samples_per_capsule);
+    EXPECT_GE(told_lost(), 2U);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OfAFewCapsules,
+    EarlyLossTest,
+    testing::Combine(testing::Range<std::size_t>(1, 6), testing::Range<std::size_t>(1, 5))
+);
+
 TEST_F(PauseTest, CapsulesThatComeLateButTogetherAreAllDecoded) {
     receive_clean(0, clean);
     receive(clean, 0us, 40);

@@ -11,15 +11,15 @@ namespace {
 TurnRate steady_at(std::int32_t turned) {
     TurnRate rate;
     for (int i = 0; i < 3; ++i) {
-        EXPECT_EQ(rate.learn(turned), 1);
+        (void)rate.learn(turned);
     }
     return rate;
 }
 
 TEST(TurnRateTest, IsNotKnownBeforeThreeTurnsAgree) {
     TurnRate rate;
-    EXPECT_EQ(rate.learn(1000), 1);
-    EXPECT_EQ(rate.learn(1000), 1);
+    EXPECT_EQ(rate.learn(1000), std::nullopt);
+    EXPECT_EQ(rate.learn(1000), std::nullopt);
     EXPECT_EQ(rate.packet_times(1000), std::nullopt);
     EXPECT_EQ(rate.learn(1000), 1);
     EXPECT_EQ(rate.packet_times(1000), 1);
@@ -40,9 +40,22 @@ TEST(TurnRateTest, OneLossAfterTheOtherIsSeen) {
 TEST(TurnRateTest, TwoMultiplesInARowAreAnotherSpeed) {
     auto rate = steady_at(1000);
     EXPECT_EQ(rate.learn(2000), 2);
-    EXPECT_EQ(rate.learn(2000), 1);
+    EXPECT_EQ(rate.learn(2000), std::nullopt);
     EXPECT_EQ(rate.learn(2000), 1);
     EXPECT_EQ(rate.packet_times(2000), 1);
+}
+
+TEST(TurnRateTest, TwoTurnsHaveARateIfTheyAgree) {
+    EXPECT_EQ(common_rate(1000, 1050), 1050);
+    EXPECT_EQ(common_rate(1000, 2000), std::nullopt);
+    EXPECT_EQ(common_rate(0, 0), std::nullopt);
+}
+
+TEST(TurnRateTest, WhatWasLostBeforeTheRateWasKnownIsSeenAfterwards) {
+    EXPECT_EQ(packet_times_at(1000, 3050), 3);
+    EXPECT_EQ(packet_times_at(1000, 2500), std::nullopt);
+    EXPECT_EQ(packet_times_at(1000, 1200), 1);
+    EXPECT_EQ(packet_times_at(1000, 500), 1) << "it spun up";
 }
 
 TEST(TurnRateTest, FollowsASpeedThatDrifts) {
@@ -57,7 +70,7 @@ TEST(TurnRateTest, ATurnBetweenMultiplesIsNotExplained) {
     EXPECT_EQ(steady_at(1000).packet_times(1500), std::nullopt);
     EXPECT_EQ(steady_at(1000).packet_times(870), std::nullopt);
     EXPECT_EQ(steady_at(1000).packet_times(2130), std::nullopt);
-    EXPECT_EQ(steady_at(1000).learn(1500), 1);
+    EXPECT_EQ(steady_at(1000).learn(1500), std::nullopt);
 }
 
 TEST(TurnRateTest, StandstillAndTurningBackAreNeverExplained) {
