@@ -13,10 +13,6 @@ using protocol::ConfType;
 
 namespace {
 
-Result<std::string> to_text(std::span<const std::uint8_t> value) {
-    return protocol::decode_conf_text(value);
-}
-
 /// A configuration value that is the same for all modes; nothing if the lidar does not know it.
 /// Errors: those of the link.
 template <class Value>
@@ -149,7 +145,8 @@ asio::awaitable<Result<void>> ask_details(Conversation& talk, Identity& identity
     if (!protocol::knows_lidar_conf(identity.info) || !identity.modes.front().id) {
         co_return Result<void>{};
     }
-    const auto alias = co_await ask_optional<std::string>(talk, ConfType::model_alias, to_text);
+    const auto alias =
+        co_await ask_optional<std::string>(talk, ConfType::model_alias, protocol::decode_conf_text);
     if (!alias) {
         co_return alias.error();
     }

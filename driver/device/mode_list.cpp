@@ -20,10 +20,6 @@ constexpr std::uint16_t most_modes = 32;
 /// What firmware before GET_SAMPLERATE is known to do (protocol.md 4.4).
 constexpr protocol::SampleRate rate_of_old_firmware{476us, 476us};
 
-Result<std::string> to_text(std::span<const std::uint8_t> value) {
-    return protocol::decode_conf_text(value);
-}
-
 template <class Value>
 asio::awaitable<Result<Value>> ask_mode(
     Conversation& talk,
@@ -64,7 +60,7 @@ asio::awaitable<Result<ScanMode>> read_mode(Conversation& talk, std::uint16_t id
     if (!distance && line_failed(distance.error())) {
         co_return distance.error();
     }
-    const auto text = co_await ask_mode(talk, ConfType::mode_name, id, to_text);
+    const auto text = co_await ask_mode(talk, ConfType::mode_name, id, protocol::decode_conf_text);
     if (!text && line_failed(text.error())) {
         co_return text.error();
     }

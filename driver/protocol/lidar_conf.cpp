@@ -125,7 +125,7 @@ Result<AnswerType> decode_mode_answer_type(std::span<const std::uint8_t> value) 
     return static_cast<AnswerType>(value[0]);
 }
 
-std::string decode_conf_text(std::span<const std::uint8_t> value) {
+Result<std::string> decode_conf_text(std::span<const std::uint8_t> value) {
     std::string text;
     for (const auto byte : value.first(std::min(value.size(), longest_text))) {
         if (byte == 0) {

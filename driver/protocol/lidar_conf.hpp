@@ -77,8 +77,9 @@ decode_conf(std::span<const std::uint8_t> packet, ConfType asked);
 [[nodiscard]] Result<double> decode_mode_max_distance(std::span<const std::uint8_t> value);
 /// Any byte: whether the type can be decoded is for who decodes it.
 [[nodiscard]] Result<AnswerType> decode_mode_answer_type(std::span<const std::uint8_t> value);
-/// Text up to a zero or the end, at most 64 bytes, printable ASCII only. May be empty.
-[[nodiscard]] std::string decode_conf_text(std::span<const std::uint8_t> value);
+/// Text up to a zero or the end, at most 64 bytes, printable ASCII only. May be empty; never an
+/// error.
+[[nodiscard]] Result<std::string> decode_conf_text(std::span<const std::uint8_t> value);
 
 [[nodiscard]] std::vector<std::uint8_t> encode_static_ip(const StaticIp& address);
 

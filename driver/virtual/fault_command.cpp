@@ -2,6 +2,7 @@
 
 #include "driver/virtual/error.hpp"
 #include "driver/virtual/faults.hpp"
+#include "driver/virtual/trimmed.hpp"
 
 #include <fmt/format.h>
 
@@ -15,8 +16,6 @@
 namespace sweepcast::virtual_lidar {
 
 namespace {
-
-constexpr std::string_view spaces = " \t\r\n";
 
 // What may follow the name of an incident.
 enum class Value : std::uint8_t { none, code, bytes };
@@ -185,20 +184,12 @@ struct ToText {
 
 }  // namespace
 
-std::string_view trimmed(std::string_view text) {
-    const auto begin = text.find_first_not_of(spaces);
-    if (begin == std::string_view::npos) {
-        return {};
-    }
-    return text.substr(begin, text.find_last_not_of(spaces) - begin + 1);
-}
-
 Result<FaultCommand, Problem> parse_fault_command(std::string_view text) {
     text = trimmed(text);
     if (text.size() > longest_fault_command) {
         return malformed(text, "COMMAND", "a command has at most 1024 bytes");
     }
-    const auto end = std::min(text.find_first_of(spaces), text.size());
+    const auto end = std::min(text.find_first_of(blanks), text.size());
     const auto word = text.substr(0, end);
     const auto rest = trimmed(text.substr(end));
     if (word == "replug") {

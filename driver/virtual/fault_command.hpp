@@ -44,9 +44,6 @@ struct Suffer {
 
 using FaultCommand = std::variant<Unplug, Replug, SetFault, ClearFault, Suffer>;
 
-/// The text without the blanks round it.
-[[nodiscard]] std::string_view trimmed(std::string_view text);
-
 /// What a command has at most.
 inline constexpr std::size_t longest_fault_command = 1024;
 

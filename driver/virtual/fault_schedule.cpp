@@ -1,6 +1,7 @@
 #include "driver/virtual/fault_schedule.hpp"
 
 #include "driver/virtual/error.hpp"
+#include "driver/virtual/trimmed.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,7 @@
 #include "driver/virtual/polar_map.hpp"
 
 #include "driver/virtual/error.hpp"
+#include "driver/virtual/trimmed.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -13,15 +14,6 @@ namespace sweepcast::virtual_lidar {
 namespace {
 
 constexpr std::string_view header = "angle_deg,distance_mm";
-
-std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view blank = " \t\r";
-    const auto first = text.find_first_not_of(blank);
-    if (first == std::string_view::npos) {
-        return {};
-    }
-    return text.substr(first, text.find_last_not_of(blank) - first + 1);
-}
 
 std::optional<double> parse_number(std::string_view text) {
     double value{};

@@ -4,6 +4,7 @@
 #include "driver/virtual/error.hpp"
 #include "driver/virtual/pty.hpp"
 #include "driver/virtual/tcp_port.hpp"
+#include "driver/virtual/trimmed.hpp"
 #include "driver/virtual/uart.hpp"
 #include "driver/virtual/udp_port.hpp"
 

@@ -35,7 +35,7 @@ void read_board(Input packet) {
 }
 
 void read_text(Input value) {
-    const auto text = decode_conf_text(value);
+    const auto text = decode_conf_text(value).value();
     require(text.size() <= std::min<std::size_t>(value.size(), 64));
     require(std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; }));
 }

@@ -5,7 +5,7 @@ Usage: tidy.py BUILD_DIR [ROOM...]. BUILD_DIR holds compile_commands.json and th
 
 Nearly all of clang-tidy's time goes into Boost's headers, which it walks again for every source. So the sources of a room are
 checked as one, a file that includes them all: 90 s instead of 330 s. Where that does not compile, because two of them use a name
-of their own for different things, they are checked one by one. What was clean is remembered in BUILD_DIR/tidy by a hash of
+of their own for different things, each half is checked as one, and so on. What was clean is remembered in BUILD_DIR/tidy by a hash of
 the sources, of every header of ours that they reach, of the flags and of clang-tidy's version and settings.
 Exit code 1 if anything is found.
 """
@@ -25,7 +25,6 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
 OURS = r"/(driver|server)/[a-z0-9_/]+\.[ch]pp$"
-DOES_NOT_COMPILE = "[clang-diagnostic-error]"
 
 
 def run_tidy(*arguments):
@@ -77,21 +76,33 @@ class Room:
         return sorted(seen)
 
     def findings(self):
-        """What clang-tidy finds: of all sources as one, or one by one; empty if nothing."""
-        together = self.build / "tidy" / self.name / "all.cpp"
-        together.parent.mkdir(parents=True, exist_ok=True)
-        together.write_text("".join(f'#include "{source}"\n' for source in self.sources), encoding="utf-8")
+        """What clang-tidy finds in the sources; empty if nothing."""
         for settings in self.settings:  # clang-tidy looks for them beside and above the file that it is given
             copied = self.build / "tidy" / settings.relative_to(ROOT)
+            copied.parent.mkdir(parents=True, exist_ok=True)
             copied.write_text(settings.read_text(encoding="utf-8"), encoding="utf-8")
-        found = self.tidy(together, "--checks=-bugprone-suspicious-include")  # it would find every line above
-        if DOES_NOT_COMPILE in found:
-            found = "\n".join(filter(None, (self.tidy(source) for source in self.sources)))
-        return found
+        return "\n".join(filter(None, (self.tidy(file) for file in self.as_few(self.sources))))
 
-    def tidy(self, source, *options):
-        """Runs clang-tidy on one file; gives back what it says if that is not nothing."""
-        run = run_tidy("--quiet", f"--header-filter={OURS}", *options, str(source), "--", *self.flags)
+    def as_few(self, sources):
+        """Files that together include all of `sources`, and compile: one if that is possible."""
+        together = self.build / "tidy" / self.name / f"{sources[0].stem}_and_{len(sources) - 1}_more.cpp"
+        together.parent.mkdir(parents=True, exist_ok=True)
+        together.write_text("".join(f'#include "{source}"\n' for source in sources), encoding="utf-8")
+        half = len(sources) // 2
+        if half == 0 or self.compiles(together):
+            return [together]
+        return [*self.as_few(sources[:half]), *self.as_few(sources[half:])]
+
+    def compiles(self, file):
+        """Whether `file` is C++."""
+        command = ["clang++", "-fsyntax-only", *self.flags, "-w", str(file)]
+        return subprocess.run(command, capture_output=True, cwd=ROOT, stdin=subprocess.DEVNULL, check=False).returncode == 0
+
+    def tidy(self, file):
+        """Runs clang-tidy on a file that includes sources; gives back what it says if that is not nothing."""
+        checks = "--checks=-bugprone-suspicious-include"  # it would find every line of the file
+        # The compiler's own warnings are the builds' affair; what shadows a name of another source is none.
+        run = run_tidy("--quiet", f"--header-filter={OURS}", checks, str(file), "--", *self.flags, "-w")
         return (run.stdout.strip() or run.stderr.strip()) if run.returncode != 0 else ""
 
 

@@ -90,14 +90,14 @@ TEST(ConfAnswerTest, DesiredRotationIsSpeedAndDuty) {
 }
 
 TEST(ConfTextTest, EndsAtAZeroOrWithoutOne) {
-    EXPECT_EQ(decode_conf_text(text(std::string_view("Boost\0x", 7))), "Boost");
-    EXPECT_EQ(decode_conf_text(text("Boost")), "Boost");
-    EXPECT_EQ(decode_conf_text({}), "");
+    EXPECT_EQ(decode_conf_text(text(std::string_view("Boost\0x", 7))).value(), "Boost");
+    EXPECT_EQ(decode_conf_text(text("Boost")).value(), "Boost");
+    EXPECT_EQ(decode_conf_text({}).value(), "");
 }
 
 TEST(ConfTextTest, HoldsAtMost64PrintableCharacters) {
-    EXPECT_EQ(decode_conf_text(text(std::string(200, 'x'))).size(), 64U);
-    EXPECT_EQ(decode_conf_text(text("a\x1B[2Jb\xFF")), "a[2Jb");
+    EXPECT_EQ(decode_conf_text(text(std::string(200, 'x'))).value().size(), 64U);
+    EXPECT_EQ(decode_conf_text(text("a\x1B[2Jb\xFF")).value(), "a[2Jb");
 }
 
 TEST(SetConfAnswerTest, SaysWhetherItTookEffect) {
