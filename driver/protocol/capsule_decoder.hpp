@@ -83,9 +83,9 @@ private:
     using CapsuleBytes = std::span<const std::uint8_t, capsule_size>;
 
     struct Held {
-        std::array<std::uint8_t, capsule_size> bytes;
+        std::array<std::uint8_t, capsule_size> bytes{};
         AngleQ6 start;
-        SampleTime arrival;
+        SampleTime arrival{};
         std::int32_t turned_q8{};  ///< up to the next one
         bool next_is_late{};       ///< so late that one may be missing before it
         /// In how many packets' time it turned so far: nothing while in doubt, 0 if given up.

@@ -47,7 +47,7 @@ std::optional<std::int32_t> TurnRate::packet_times(std::int32_t turned) const {
 }
 
 std::optional<std::int32_t> common_rate(std::int32_t turned, std::int32_t then) {
-    return agree(then, turned) ? std::optional(then) : std::nullopt;
+    return agree(turned, then) ? std::optional(then) : std::nullopt;
 }
 
 std::optional<std::int32_t> packet_times_at(std::int32_t rate, std::int32_t turned) {
