@@ -50,7 +50,8 @@ struct FinishedCapsule {
 ///    than one packet is believed only if a capsule's sync nibbles followed it directly, else its
 ///    own tail may be missing;
 ///  - a packet lost without a trace shows as a sudden multiple of the steady rate and is treated
-///    likewise, where the vendor stretches the capsule before it over the gap;
+///    likewise, where the vendor stretches the capsule before it over the gap. One such turn after
+///    the other is another speed, unless the capsules come as late as if packets were missing;
 ///  - after a pause in which the scanner may have turned by half a turn or more, or before which
 ///    the rate was not steady (if the pause is longer than hosts and adapters are late), nobody
 ///    knows how far it turned: the capsule before the pause is given up. Bytes that a line
@@ -59,7 +60,8 @@ struct FinishedCapsule {
 ///    long: then the scanner is slower than it says;
 ///  - if the turn fits no rate known and the next capsule came late, a packet may be missing, or
 ///    the host was late: the capsule waits, and those after it, until two turns in a row agree and
-///    tell the rate. One that is in doubt then, or after four more, is given up.
+///    tell the rate; four turns at most, and no longer than until damage, a pause or a restart. One
+///    still in doubt is decoded if the scanner turned no less afterwards, else given up.
 ///
 /// `Format` says what the bytes of an answer type mean:
 ///  - `type`, `samples_per_capsule`, `start_word_at`;
@@ -108,7 +110,7 @@ private:
     }
     [[nodiscard]] std::int64_t pause_before(SampleTime arrival) const;
     [[nodiscard]] bool hides_turns(std::int64_t pause, std::int32_t turned) const;
-    [[nodiscard]] bool is_late(SampleTime arrival) const;
+    [[nodiscard]] std::chrono::microseconds latest_after(int packets) const;
     void decode(
         const Held& held,
         std::int32_t turned_q8,
@@ -230,8 +232,11 @@ void CapsuleDecoder<Format>::follow(
         finish_before_damage(next, turned, out);
     } else {
         latest.turned_q8 = turned;
-        latest.next_is_late = is_late(arrival);
-        latest.packets = rate_.learn(turned);
+        latest.next_is_late = arrival - latest.arrival > latest_after(1);
+        latest.packets = rate_.packet_times(turned);
+        if (!latest.next_is_late || latest.packets.value_or(1) == 1) {
+            latest.packets = rate_.learn(turned);
+        }
         if (!latest.packets && !latest.next_is_late) {
             latest.packets = 1;
         }
@@ -265,11 +270,8 @@ void CapsuleDecoder<Format>::settle_doubts() {
         return;
     }
     const auto latest = std::span(held_).last(3);
-    if (latest[0].next_is_late && latest[1].next_is_late) {
-        return;
-    }
     const auto rate = common_rate(latest[0].turned_q8, latest[1].turned_q8);
-    if (!rate) {
+    if (!rate || latest[2].arrival - latest[0].arrival > latest_after(2)) {
         return;
     }
     for (auto& held : std::span(held_).first(held_.size() - 1)) {
@@ -278,17 +280,17 @@ void CapsuleDecoder<Format>::settle_doubts() {
     }
 }
 
-/// Decodes the first capsule held, which another one follows, unless it is given up. One in doubt
-/// still is if the scanner turned less afterwards.
+/// Decodes the first capsule held, which another one follows, unless it is given up.
 template <class Format>
 void CapsuleDecoder<Format>::finish_first(Decoded& out) {
     const auto& first = held_.front();
     const auto after = std::span(held_).subspan(1, held_.size() - 2);
-    const auto is_one = [&](const Held& then) {
+    const auto turned_no_less = [&](const Held& then) {
         return packet_times_at(then.turned_q8, first.turned_q8) == 1;
     };
-    const auto unknown = !after.empty() && std::ranges::all_of(after, is_one) ? 1 : 0;
-    const auto packets = first.packets.value_or(unknown);
+    const bool is_likely = !std::ranges::all_of(after, &Held::next_is_late) &&
+                           std::ranges::all_of(after, turned_no_less);
+    const auto packets = first.packets.value_or(is_likely ? 1 : 0);
     if (packets > 0) {
         decode(first, first.turned_q8 / packets, held_[1].bytes, packets == 1, out);
     }
@@ -331,11 +333,12 @@ bool CapsuleDecoder<Format>::hides_turns(std::int64_t pause, std::int32_t turned
     return !times || (pause + 1) * turned / *times >= turn_q8 / 2;
 }
 
-/// Whether the one that is here since `arrival` came so late that one before it may be missing.
+/// What so many packets in a row take at most if none is missing among them, hosts being somewhat
+/// late. Without the time of a packet there is no such limit.
 template <class Format>
-bool CapsuleDecoder<Format>::is_late(SampleTime arrival) const {
-    return packet_time().count() > 0 &&
-           arrival - held_.back().arrival > packet_time() + packet_time() / 4;
+std::chrono::microseconds CapsuleDecoder<Format>::latest_after(int packets) const {
+    return packet_time().count() > 0 ? packets * packet_time() * 5 / 4
+                                     : std::chrono::microseconds::max();
 }
 
 template <class Format>

@@ -36,8 +36,8 @@ enum class DecodeEventKind : std::uint8_t {
     scan_reset,     ///< the device restarted its angle reference: the unfinished revolution is void
     bytes_skipped,  ///< `count` bytes belonged to no packet
     /// Besides those with a checksum error, `count` packets that the scanner sent never came, by
-    /// how far it had turned meanwhile. Known for capsules at a steady speed only; after a pause
-    /// that hides how far it turned, one, which is given up.
+    /// how far it had turned meanwhile. Known for capsules only; where a pause or an unsteady speed
+    /// hides how far it turned, one, which is given up.
     packets_lost,
 };
 

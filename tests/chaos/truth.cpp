@@ -114,10 +114,14 @@ Found Truth::find(std::span<const protocol::Sample> samples, protocol::AnswerTyp
     return Found::no;
 }
 
-std::size_t Truth::known(std::span<const protocol::Sample> samples) const {
-    return static_cast<std::size_t>(std::ranges::count_if(samples, [this](const auto& sample) {
-        return std::ranges::any_of(measured_, [&](const auto& each) { return each == sample; });
-    }));
+std::vector<std::size_t> Truth::unknown(std::span<const protocol::Sample> samples) const {
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (std::ranges::none_of(measured_, [&](const auto& each) { return each == samples[i]; })) {
+            places.push_back(i);
+        }
+    }
+    return places;
 }
 
 std::optional<std::size_t>

@@ -37,8 +37,8 @@ public:
     /// Looks for these samples. What is found, and all before it, is forgotten.
     Found find(std::span<const protocol::Sample> samples, protocol::AnswerType type);
 
-    /// How many of these samples were measured at all, in whatever order.
-    [[nodiscard]] std::size_t known(std::span<const protocol::Sample> samples) const;
+    /// Which of these samples were not measured at all, by their places.
+    [[nodiscard]] std::vector<std::size_t> unknown(std::span<const protocol::Sample> samples) const;
 
 private:
     struct Measurement {

@@ -6,6 +6,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <exception>
 #include <stdexcept>
@@ -244,12 +245,13 @@ void Watcher::compare(Watched& watched) {
                     continue;
                 }
                 throw std::runtime_error(fmt::format(
-                    "{}: of sweep {} only {} of {} samples (mode {}) were measured so",
+                    "{}: the {} samples of sweep {} (mode {}) were not all measured so, in that "
+                    "order; not at all: those at {}",
                     watched.lidar->link(),
-                    sweep.sequence,
-                    watched.truth.known(samples),
                     samples.size(),
-                    sweep.scan.mode
+                    sweep.sequence,
+                    sweep.scan.mode,
+                    watched.truth.unknown(samples)
                 ));
             }
             return;

@@ -85,12 +85,14 @@ class Room:
 
     def as_few(self, sources):
         """Files that together include all of `sources`, and compile: one if that is possible."""
+        if len(sources) == 1:
+            return sources
         together = self.build / "tidy" / self.name / f"{sources[0].stem}_and_{len(sources) - 1}_more.cpp"
         together.parent.mkdir(parents=True, exist_ok=True)
         together.write_text("".join(f'#include "{source}"\n' for source in sources), encoding="utf-8")
-        half = len(sources) // 2
-        if half == 0 or self.compiles(together):
+        if self.compiles(together):
             return [together]
+        half = len(sources) // 2
         return [*self.as_few(sources[:half]), *self.as_few(sources[half:])]
 
     def compiles(self, file):
