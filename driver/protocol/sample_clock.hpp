@@ -61,7 +61,7 @@ private:
     [[nodiscard]] double since_start(SampleTime time) const;
 
     std::size_t samples_per_packet_;
-    bool holds_packet_;  ///< the decoder gives out a packet when the next one is in
+    bool holds_packet_;  ///< the decoder gives out no packet before the next one is in
     double packet_bytes_;
     double nominal_step_;
     double per_byte_;
