@@ -16,6 +16,18 @@ count_results() {
     failed=$((failed + all - ok - chosen))
 }
 
+# failed_tests JUNIT: the names of the tests that failed, one a line, as ctest writes them there.
+failed_tests() {
+    sed -nE 's/^[[:space:]]*<testcase name="([^"]*)".* status="(fail|notrun)".*/\1/p' "$1"
+}
+
+# may_have_been_late JUNIT LOG: whether few tests failed, and none because a sanitizer found something.
+may_have_been_late() {
+    local count
+    count=$(failed_tests "$1" | wc -l)
+    ((count >= 1 && count <= 3)) && ! grep -qE '[a-z]Sanitizer:|runtime error:' "$2"
+}
+
 # show_failures LOG: what the tests that failed said, out of ctest's log, and their names. Of each test 300 lines
 # at most.
 show_failures() {

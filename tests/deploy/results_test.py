@@ -76,6 +76,25 @@ class ResultsTest(unittest.TestCase):
     def test_what_a_test_prints_does_not_count(self):
         self.assertEqual(self.totals([SAYS_IT_FAILED]), (1, 0, 0))
 
+    def may_have_been_late(self, cases, log):
+        """Whether failures of these test cases may be put down to a busy machine, this being ctest's log."""
+        with tempfile.TemporaryDirectory() as folder:
+            junit, text = Path(folder) / "junit", Path(folder) / "log"
+            junit.write_text("".join(f"\t{case}\n\t</testcase>\n" for case in cases), encoding="utf-8")
+            text.write_text(log, encoding="utf-8")
+            script = f'source "{RESULTS}"; may_have_been_late "{junit}" "{text}"'
+            return subprocess.run(["bash", "-c", script], check=False).returncode == 0
+
+    def test_three_tests_at_most_may_have_been_late(self):
+        self.assertTrue(self.may_have_been_late([PASSED, FAILED], CTEST_LOG))
+        self.assertTrue(self.may_have_been_late([FAILED] * 3, CTEST_LOG))
+        self.assertFalse(self.may_have_been_late([FAILED] * 4, CTEST_LOG))
+        self.assertFalse(self.may_have_been_late([PASSED, SAYS_IT_FAILED], CTEST_LOG))
+
+    def test_what_a_sanitizer_reports_is_never_put_down_to_lateness(self):
+        for report in ("ERROR: AddressSanitizer: heap-use-after-free", "a.cpp:1:2: runtime error: index 9 out of bounds"):
+            self.assertFalse(self.may_have_been_late([FAILED], CTEST_LOG + report))
+
     def failures(self, log):
         """What show_failures prints of this log of ctest."""
         with tempfile.TemporaryDirectory() as folder:

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <string>
 
 namespace sweepcast::test {
@@ -118,7 +119,9 @@ TEST(Control, ALidarThatVanishesIsReportedAndTakenAgain) {
     Subscriber client("tcp://" + gateway.tcp);
     client.subscribe();
     const auto before = client.next_sweep().sequence;
-    lidar.reset();  // killed
+    // Killed, it would leave a link to what may be another's port by then.
+    lidar->process.signal(SIGTERM);
+    EXPECT_EQ(lidar->process.wait(), 0);
     client.wait_for_state(v1::Lidar::BACKING_OFF);
     const auto absent = client.wait_for_state(v1::Lidar::ABSENT);
     EXPECT_TRUE(absent.has_failing_since());

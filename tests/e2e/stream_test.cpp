@@ -71,6 +71,9 @@ TEST_P(ModeTest, ClientsGetExactlyTheSamplesThatTheLidarSent) {
         }
     }
 
+    // First: without its lidar it would wait for a port of that name, which others' may get.
+    gateway.process.signal(SIGTERM);
+    EXPECT_EQ(gateway.process.wait(), 0);
     lidar.process.signal(SIGTERM);
     EXPECT_EQ(lidar.process.wait(), 0);
     const auto sent = decode_file(scratch.file("sent.bin"), answer_type);
