@@ -94,6 +94,7 @@ asio::awaitable<Result<void>> Scan::read_stream(protocol::AnswerType type) {
     std::vector<protocol::Sweep> finished;
     bool begun = false;
     bool silent = false;
+    bool excused = false;  // for bytes without samples, since the last samples
     for (;;) {
         const auto bytes = co_await talk_.read(samples_due_);
         if (!bytes && bytes.error() == link::errc::timed_out && begun && !silent) {
@@ -114,6 +115,9 @@ asio::awaitable<Result<void>> Scan::read_stream(protocol::AnswerType type) {
         const auto samples = reader->push(*bytes, arrival, finished);
         if (samples > 0) {
             samples_due_ = std::max(samples_due_, now + silence_limit);
+            excused = false;
+        } else if (now >= samples_due_ && !std::exchange(excused, true)) {
+            samples_due_ = now + silence_limit;  // part of a packet, maybe, and it is us who are late
         } else if (now >= samples_due_) {  // bytes alone are no scan
             co_return make_error_code(link::errc::timed_out);
         }

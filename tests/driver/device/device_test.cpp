@@ -4,6 +4,7 @@
 
 #include "driver/device/error.hpp"
 #include "driver/link/error.hpp"
+#include "driver/protocol/encode_normal.hpp"
 #include "tests/driver/device/fake_scanner.hpp"
 #include "tests/driver/device/memory_link.hpp"
 
@@ -21,6 +22,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -603,6 +605,27 @@ TEST_F(DeviceTest, AGatewayThatIsHeldUpTakesItForNoFaultOfTheLidar) {
         for (unsigned degree = 10; degree < 20; ++degree) {  // what came meanwhile
             test.scanner.send_sample(degree);
         }
+        co_await test.until([&test, before] { return test.device->state().line.samples > before; });
+    }(*this));
+    EXPECT_THAT(phases, testing::Not(Contains(Phase::stalled)));
+}
+
+TEST_F(DeviceTest, AGatewayThatIsHeldUpInMidPacketTakesItForNoFaultOfTheLidar) {
+    make_device({.recovery = not_again});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::scanning);
+        const auto before = test.device->state().line.samples;
+        // The thread is held up, longer than a silence may last.
+        const auto goes_on_at = std::chrono::steady_clock::now() + 500ms;
+        while (std::chrono::steady_clock::now() < goes_on_at) {
+        }
+        const auto packet = protocol::encode_normal({});
+        test.line.send(std::span(packet).first<2>());
+        while (!test.line.to_host.empty()) {
+            co_await asio::post(asio::use_awaitable);
+        }
+        test.line.send(std::span(packet).subspan<2>());
+        test.scanner.send_turn();
         co_await test.until([&test, before] { return test.device->state().line.samples > before; });
     }(*this));
     EXPECT_THAT(phases, testing::Not(Contains(Phase::stalled)));
