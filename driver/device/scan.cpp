@@ -117,7 +117,7 @@ asio::awaitable<Result<void>> Scan::read_stream(protocol::AnswerType type) {
             samples_due_ = std::max(samples_due_, now + silence_limit);
             excused = false;
         } else if (now >= samples_due_ && !std::exchange(excused, true)) {
-            samples_due_ = now + silence_limit;  // part of a packet, maybe, and it is us who are late
+            samples_due_ = now + silence_limit;  // maybe it is us who are late
         } else if (now >= samples_due_) {  // bytes alone are no scan
             co_return make_error_code(link::errc::timed_out);
         }
