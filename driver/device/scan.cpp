@@ -116,10 +116,12 @@ asio::awaitable<Result<void>> Scan::read_stream(protocol::AnswerType type) {
         if (samples > 0) {
             samples_due_ = std::max(samples_due_, now + silence_limit);
             excused = false;
-        } else if (now >= samples_due_ && !std::exchange(excused, true)) {
-            samples_due_ = now + silence_limit;  // maybe it is us who are late
-        } else if (now >= samples_due_) {  // bytes alone are no scan
-            co_return make_error_code(link::errc::timed_out);
+        } else if (now >= samples_due_) {
+            // Bytes alone are no scan, but these may be part of a packet, and it is us who are late.
+            if (std::exchange(excused, true)) {
+                co_return make_error_code(link::errc::timed_out);
+            }
+            samples_due_ = now + silence_limit;
         }
         if (samples > 0 && !std::exchange(begun, true)) {
             samples_due_ = now + silence_limit;
