@@ -117,7 +117,8 @@ asio::awaitable<Result<void>> Scan::read_stream(protocol::AnswerType type) {
             samples_due_ = std::max(samples_due_, now + silence_limit);
             excused = false;
         } else if (now >= samples_due_) {
-            // Bytes alone are no scan, but these may be part of a packet, and it is us who are late.
+            // Bytes alone are no scan, but these may be part of a packet, and it is us who are
+            // late.
             if (std::exchange(excused, true)) {
                 co_return make_error_code(link::errc::timed_out);
             }
