@@ -59,9 +59,10 @@ struct FinishedCapsule {
 ///    of a network may. It is none either if the capsule before came after one at least half as
 ///    long: then the scanner is slower than it says;
 ///  - if the turn fits no rate known and the next capsule came late, a packet may be missing, or
-///    the host was late: the capsule waits, and those after it, until two turns in a row agree and
-///    tell the rate; four turns at most, and no longer than until damage, a pause or a restart. One
-///    still in doubt is decoded if the scanner turned no less afterwards, else given up.
+///    the host was late (not if all are late: again, the scanner is slow): the capsule waits, and
+///    those after it, until two turns in a row agree and tell the rate; four turns at most, and no
+///    longer than until damage, a pause or a restart. One still in doubt is decoded if the scanner
+///    turned no less afterwards, else given up.
 ///
 /// `Format` says what the bytes of an answer type mean:
 ///  - `type`, `samples_per_capsule`, `start_word_at`;
@@ -95,6 +96,8 @@ private:
     };
     /// The first may be in doubt, the last waits for the next.
     static constexpr std::size_t most_held = 6;
+    /// If more are late in a row, the scanner is slower than it says.
+    static constexpr std::uint64_t most_late_in_a_row = 4;
 
     std::size_t step(const TimedBytes& input, Decoded& out);
     std::size_t search(CapsuleBytes bytes, Decoded& out);
@@ -126,6 +129,7 @@ private:
     TurnRate rate_;
     boost::container::static_vector<Held, most_held> held_;  ///< in order
     std::optional<LineDamage> damage_;
+    std::uint64_t late_in_a_row_{};
     std::int64_t paused_{};  ///< for how many packets, before the latest capsule held
 };
 
@@ -233,11 +237,12 @@ void CapsuleDecoder<Format>::follow(
     } else {
         latest.turned_q8 = turned;
         latest.next_is_late = arrival - latest.arrival > latest_after(1);
+        late_in_a_row_ = latest.next_is_late ? late_in_a_row_ + 1 : 0;
         latest.packets = rate_.packet_times(turned);
         if (!latest.next_is_late || latest.packets.value_or(1) == 1) {
             latest.packets = rate_.learn(turned);
         }
-        if (!latest.packets && !latest.next_is_late) {
+        if (!latest.packets && (!latest.next_is_late || late_in_a_row_ > most_late_in_a_row)) {
             latest.packets = 1;
         }
     }

@@ -278,5 +278,18 @@ TEST_F(PauseTest, AScannerSlowerThanItSaysIsDecoded) {
     EXPECT_GE(decoded_.samples.size(), (clean - 3) * samples_per_capsule);
 }
 
+class UnsteadyTest : public PauseTest {
+protected:
+    [[nodiscard]] unsigned turned_q6(std::size_t capsule) const override {
+        return capsule % 2 == 0 ? steady_q6 : steady_q6 * 4 / 5;
+    }
+};
+
+TEST_F(UnsteadyTest, AScannerSlowerThanItSaysIsDecodedOnceThatIsKnown) {
+    decoder_ = make_decoder(AnswerType::express, {.sample_duration = sample_duration / 10});
+    receive_clean(0, clean);
+    EXPECT_GE(decoded_.samples.size(), (clean - 6) * samples_per_capsule);
+}
+
 }  // namespace
 }  // namespace sweepcast::protocol
