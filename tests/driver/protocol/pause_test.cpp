@@ -177,16 +177,22 @@ INSTANTIATE_TEST_SUITE_P(UpToFourTurns, SpinUpTest, testing::Range<std::size_t>(
 
 /// How many capsules came before the loss, and how many were lost.
 class EarlyLossTest : public PauseTest,
-                      public testing::WithParamInterface<std::tuple<std::size_t, std::size_t>> {};
+                      public testing::WithParamInterface<std::tuple<std::size_t, std::size_t>> {
+protected:
+    /// At least so many capsules came out, all of them true, and at least so many losses were told.
+    void expect_the_truth_of(std::size_t least_capsules, std::size_t least_lost) const {
+        const auto capsules = decoded_.samples.size() / samples_per_capsule;
+        EXPECT_GE(capsules, least_capsules);
+        expect_only_the_truth(capsules * samples_per_capsule);
+        EXPECT_GE(told_lost(), least_lost);
+    }
+};
 
 TEST_P(EarlyLossTest, BeforeTheSpeedIsKnownGivesNoSampleAWrongAngle) {
     const auto [before, lost] = GetParam();
     receive_clean(0, before);
     receive_clean(before + lost, clean);
-    const auto capsules = decoded_.samples.size() / samples_per_capsule;
-    EXPECT_GE(capsules, before + clean - 2);
-    expect_only_the_truth(capsules * samples_per_capsule);
-    EXPECT_GE(told_lost(), 1U);
+    expect_the_truth_of(before + clean - 2, 1);
 }
 
 TEST_P(EarlyLossTest, WithAnotherRightAfterItGivesNoSampleAWrongAngle) {
@@ -194,10 +200,7 @@ TEST_P(EarlyLossTest, WithAnotherRightAfterItGivesNoSampleAWrongAngle) {
     receive_clean(0, before);
     receive(before + lost);
     receive_clean(before + 2 * lost + 1, clean);
-    const auto capsules = decoded_.samples.size() / samples_per_capsule;
-    EXPECT_GE(capsules, before + clean - 2);
-    expect_only_the_truth(capsules * samples_per_capsule);
-    EXPECT_GE(told_lost(), 2U);
+    expect_the_truth_of(before + clean - 2, 2);
 }
 
 TEST_P(EarlyLossTest, WithALateCapsuleAndAnotherAfterItGivesNoSampleAWrongAngle) {
@@ -205,10 +208,7 @@ TEST_P(EarlyLossTest, WithALateCapsuleAndAnotherAfterItGivesNoSampleAWrongAngle)
     receive_clean(0, before);
     receive(before + lost, capsule_time);
     receive_clean(before + 2 * lost + 1, clean);
-    const auto capsules = decoded_.samples.size() / samples_per_capsule;
-    EXPECT_GE(capsules, before + clean - 2);
-    expect_only_the_truth(capsules * samples_per_capsule);
-    EXPECT_GE(told_lost(), 2U);
+    expect_the_truth_of(before + clean - 2, 2);
 }
 
 TEST_P(EarlyLossTest, WithDamageSoonAfterItGivesNoSampleAWrongAngle) {
@@ -219,10 +219,7 @@ TEST_P(EarlyLossTest, WithDamageSoonAfterItGivesNoSampleAWrongAngle) {
     capsules_[before + 2 * lost + 2].back() ^= 1;
     receive(before + 2 * lost + 2);
     capsules_[before + 2 * lost + 2].back() ^= 1;
-    const auto capsules = decoded_.samples.size() / samples_per_capsule;
-    EXPECT_GE(capsules, before - 1);
-    expect_only_the_truth(capsules * samples_per_capsule);
-    EXPECT_GE(told_lost(), 1U);
+    expect_the_truth_of(before - 1, 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(
