@@ -23,7 +23,7 @@ struct CapturedSweep {
     std::string mode;
     protocol::AnswerType answer_type{protocol::AnswerType::normal};
     /// From one sample to the next, as the lidar reports it for this mode.
-    std::chrono::microseconds sample_duration{};
+    std::chrono::nanoseconds sample_duration{};
     /// Add it to a sample's time to get UNIX time. Taken once a sweep, when it begins, so that a
     /// step of the wall clock shows between sweeps and never within one.
     std::chrono::nanoseconds monotonic_to_unix{};

@@ -27,10 +27,7 @@ Result<ScanReader> ScanReader::create(
     std::uint32_t baud,
     LineQuality& line
 ) {
-    auto decoder = protocol::Decoder::create(
-        type,
-        {std::chrono::round<std::chrono::microseconds>(mode.sample_duration), baud, baud == 0}
-    );
+    auto decoder = protocol::Decoder::create(type, {mode.sample_duration, baud, baud == 0});
     if (!decoder) {
         return decoder.error();
     }

@@ -22,7 +22,7 @@ CapturedSweep ScanStamps::stamp(protocol::Sweep sweep, protocol::AnswerType type
     captured.sweep.begun = begun_;
     captured.mode = mode_.name;
     captured.answer_type = type;
-    captured.sample_duration = std::chrono::round<std::chrono::microseconds>(mode_.sample_duration);
+    captured.sample_duration = mode_.sample_duration;
     captured.monotonic_to_unix = monotonic_to_unix_;
     captured.clock_step = std::exchange(clock_step_, {});
     captured.gap = std::exchange(gap_, {});
@@ -42,7 +42,7 @@ SweepProgress ScanStamps::stamp(
     progress.sequence = sequence_ + 1;
     progress.mode = mode_.name;
     progress.answer_type = type;
-    progress.sample_duration = std::chrono::round<std::chrono::microseconds>(mode_.sample_duration);
+    progress.sample_duration = mode_.sample_duration;
     progress.monotonic_to_unix = monotonic_to_unix_;
     progress.clock_step = clock_step_;
     progress.gap = gap_;

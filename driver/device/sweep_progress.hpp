@@ -21,7 +21,7 @@ struct SweepProgress {
     std::uint64_t sequence{};
     std::string_view mode;
     protocol::AnswerType answer_type{protocol::AnswerType::normal};
-    std::chrono::microseconds sample_duration{};
+    std::chrono::nanoseconds sample_duration{};
     /// As the CapturedSweep will have them.
     std::chrono::nanoseconds monotonic_to_unix{};
     std::chrono::nanoseconds clock_step{};

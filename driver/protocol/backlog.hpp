@@ -13,9 +13,6 @@
 
 namespace sweepcast::protocol {
 
-/// When a byte arrived, fine enough for the time that a single byte takes on the line.
-using ByteTime = std::chrono::time_point<std::chrono::steady_clock, std::chrono::nanoseconds>;
-
 /// Consecutive bytes of a stream, each with the time it arrived.
 class TimedBytes {
 public:
@@ -24,20 +21,20 @@ public:
         : bytes_(bytes)
         , arrival_(arrival) {}
     /// Bytes kept from several blocks, with as many times.
-    TimedBytes(std::span<const std::uint8_t> bytes, std::span<const ByteTime> times)
+    TimedBytes(std::span<const std::uint8_t> bytes, std::span<const ExactTime> times)
         : bytes_(bytes)
         , times_(times) {}
 
     [[nodiscard]] std::span<const std::uint8_t> bytes() const { return bytes_; }
 
     /// When byte `index` arrived.
-    [[nodiscard]] ByteTime byte_time(std::size_t index) const {
+    [[nodiscard]] ExactTime byte_time(std::size_t index) const {
         return times_.empty() ? time_in_block(index) : times_[index];
     }
 
     /// The same in whole microseconds, rounded down.
     [[nodiscard]] SampleTime arrival_of(std::size_t index) const {
-        return std::chrono::floor<std::chrono::microseconds>(byte_time(index));
+        return to_sample_time(byte_time(index));
     }
 
     /// What follows the first `count` bytes.
@@ -49,13 +46,13 @@ public:
     }
 
 private:
-    [[nodiscard]] ByteTime time_in_block(std::size_t index) const {
+    [[nodiscard]] ExactTime time_in_block(std::size_t index) const {
         const auto later = static_cast<std::int64_t>(bytes_.size() - 1 - index);
         return arrival_.last_byte - later * arrival_.per_byte;
     }
 
     std::span<const std::uint8_t> bytes_;
-    std::span<const ByteTime> times_;
+    std::span<const ExactTime> times_;
     Arrival arrival_;
 };
 
@@ -120,7 +117,7 @@ private:
     }
 
     std::array<std::uint8_t, Capacity> bytes_{};
-    std::array<ByteTime, Capacity> times_{};
+    std::array<ExactTime, Capacity> times_{};
     std::size_t size_{};
 };
 

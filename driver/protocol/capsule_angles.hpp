@@ -64,14 +64,15 @@ inline constexpr std::uint8_t quality_with_echo = 0x2F << 2;
 }
 
 /// The greatest turn in 1/256 degree that dense capsules of so many samples are decoded for; what
-/// is faster than 100 Hz is nonsense. Without a sample duration there is no such limit. Source:
+/// is faster than 100 Hz is nonsense. Without a sample duration (0) there is no such limit. Source:
 /// protocol.md 7.6, 7.7.
 [[nodiscard]] constexpr std::int32_t
-dense_turn_limit_q8(std::int32_t samples, std::chrono::microseconds sample_duration) {
+dense_turn_limit_q8(std::int32_t samples, std::chrono::nanoseconds sample_duration) {
     if (sample_duration.count() < 1) {
         return any_turn;
     }
-    const auto samples_per_second = std::max<std::int64_t>(1'000'000 / sample_duration.count(), 1);
+    const auto samples_per_second =
+        std::max<std::int64_t>(std::chrono::seconds{1} / sample_duration, 1);
     return static_cast<std::int32_t>(36'000 * samples / samples_per_second) << 8;
 }
 

@@ -32,8 +32,8 @@ struct FinishedCapsule {
     bool next_follows{};
     AngleQ6 start;
     std::int32_t turned_q8{};  ///< during this capsule; negative only if it starts beyond 360
-    SampleTime first_sample;
-    std::chrono::microseconds sample_duration{};
+    ExactTime first_sample;
+    std::chrono::nanoseconds sample_duration{};
 };
 
 /// Decodes a stream of capsules. A capsule's angles reach up to the next one's start angle, so its
@@ -108,12 +108,12 @@ private:
     void settle_doubts();
     void finish_first(Decoded& out);
     void finish_all_but_last(Decoded& out);
-    [[nodiscard]] std::chrono::microseconds packet_time() const {
+    [[nodiscard]] std::chrono::nanoseconds packet_time() const {
         return timing_.sample_duration() * std::int64_t{Format::samples_per_capsule};
     }
     [[nodiscard]] std::int64_t pause_before(SampleTime arrival) const;
     [[nodiscard]] bool hides_turns(std::int64_t pause, std::int32_t turned) const;
-    [[nodiscard]] std::chrono::microseconds latest_after(int packets) const;
+    [[nodiscard]] std::chrono::nanoseconds latest_after(int packets) const;
     void decode(
         const Held& held,
         std::int32_t turned_q8,
@@ -341,9 +341,9 @@ bool CapsuleDecoder<Format>::hides_turns(std::int64_t pause, std::int32_t turned
 /// What so many packets in a row take at most if none is missing among them, hosts being somewhat
 /// late. Without the time of a packet there is no such limit.
 template <class Format>
-std::chrono::microseconds CapsuleDecoder<Format>::latest_after(int packets) const {
+std::chrono::nanoseconds CapsuleDecoder<Format>::latest_after(int packets) const {
     return packet_time().count() > 0 ? packets * packet_time() * 5 / 4
-                                     : std::chrono::microseconds::max();
+                                     : std::chrono::nanoseconds::max();
 }
 
 template <class Format>
@@ -360,15 +360,14 @@ void CapsuleDecoder<Format>::decode(
     constexpr auto count = Format::samples_per_capsule;
     const auto first = out.samples.size();
     out.samples.resize(first + count);
-    const auto duration = timing_.sample_duration();
     format_.decode(
         {.bytes = held.bytes,
          .next = next,
          .next_follows = next_follows,
          .start = held.start,
          .turned_q8 = turned_q8,
-         .first_sample = timing_.last_sample(held.arrival) - (count - 1) * duration,
-         .sample_duration = duration},
+         .first_sample = timing_.first_sample(held.arrival, count),
+         .sample_duration = timing_.sample_duration()},
         out.samples.data() + first
     );
 }

@@ -12,7 +12,7 @@ void DenseFormat::decode(const FinishedCapsule<packet_size(type)>& capsule, Samp
     auto time = capsule.first_sample;
     auto mark = mark_;
     for (std::size_t at = 4; at < capsule.bytes.size(); at += 2, ++sample) {
-        sample->time = time;
+        sample->time = to_sample_time(time);
         sample->distance.raw = load_le16(capsule.bytes.subspan(at).first<2>()) * 4U;
         sample->angle = angle_from_q6(angles.raw_q16() >> 10);
         sample->quality = sample->distance.has_echo() ? quality_with_echo : 0;

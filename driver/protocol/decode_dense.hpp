@@ -15,7 +15,7 @@ public:
     static constexpr std::size_t samples_per_capsule = dense_samples_per_capsule;
     static constexpr std::size_t start_word_at = 2;
 
-    [[nodiscard]] static constexpr std::int32_t greatest_turn_q8(std::chrono::microseconds duration
+    [[nodiscard]] static constexpr std::int32_t greatest_turn_q8(std::chrono::nanoseconds duration
     ) {
         return dense_turn_limit_q8(40, duration);
     }

@@ -14,7 +14,7 @@ void ExpressFormat::decode(const FinishedCapsule<packet_size(type)>& capsule, Sa
     const auto put = [&](unsigned word, unsigned offset_q3) {
         const auto corrected = angles.raw_q16() - static_cast<std::int32_t>(offset_q3) * 8192;
         angles.advance();
-        sample->time = time;
+        sample->time = to_sample_time(time);
         sample->distance.raw = word & 0xFFFCU;
         sample->angle = angle_from_q6(corrected >> 10);
         sample->quality = sample->distance.has_echo() ? quality_with_echo : 0;

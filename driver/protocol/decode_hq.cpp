@@ -60,13 +60,12 @@ void HqDecoder::decode(
     const auto first = out.samples.size();
     out.samples.resize(first + hq_samples_per_packet);
     auto* sample = out.samples.data() + first;
-    auto time =
-        timing_.last_sample(arrival) - (hq_samples_per_packet - 1) * timing_.sample_duration();
+    auto time = timing_.first_sample(arrival, hq_samples_per_packet);
     for (std::size_t i = 0; i < hq_samples_per_packet; ++i, ++sample) {
         const auto bytes =
             packet.subspan(hq_samples_at + i * hq_sample_size).first<hq_sample_size>();
         const auto distance = load_le32(bytes.subspan<2, 4>());
-        sample->time = time;
+        sample->time = to_sample_time(time);
         sample->distance.raw = (distance & sign_bit) == 0 ? distance : 0;
         sample->angle.raw = load_le16(bytes.first<2>());
         sample->quality = bytes[6];

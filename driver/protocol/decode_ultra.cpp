@@ -69,7 +69,7 @@ void UltraFormat::decode(const FinishedCapsule<packet_size(type)>& capsule, Samp
         const auto corrected =
             angles.raw_q16() - ultra_offsets_q16[static_cast<std::size_t>(nearness[i])];
         angles.advance();
-        sample->time = time;
+        sample->time = to_sample_time(time);
         sample->distance.raw = static_cast<std::uint32_t>(distance > 0 ? distance : 0);
         sample->angle = angle_from_q6(corrected >> 10);
         sample->quality = distance != 0 ? quality_with_echo : 0;

@@ -20,7 +20,7 @@ public:
     static constexpr std::size_t samples_per_capsule = ultra_samples_per_capsule;
     static constexpr std::size_t start_word_at = 2;
 
-    [[nodiscard]] static constexpr std::int32_t greatest_turn_q8(std::chrono::microseconds) {
+    [[nodiscard]] static constexpr std::int32_t greatest_turn_q8(std::chrono::nanoseconds) {
         return any_turn;
     }
     static void decode(const FinishedCapsule<packet_size(type)>& capsule, Sample* sample);

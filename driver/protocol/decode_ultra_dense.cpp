@@ -49,7 +49,7 @@ void UltraDenseFormat::decode(const FinishedCapsule<packet_size(type)>& capsule,
             static_cast<std::int32_t>(word & scale.distance) * scale.step_mm + scale.first_q2;
         const bool smoothed = last != 0 && std::abs(alone - last) <= scale.smoothed_within_q2;
         last = smoothed ? (alone + last) / 2 : alone;
-        sample->time = time;
+        sample->time = to_sample_time(time);
         sample->distance.raw = static_cast<std::uint32_t>(last);
         sample->angle = angle_from_q6(angles.raw_q16() >> 10);
         sample->quality = static_cast<std::uint8_t>(word >> 12 & scale.quality);

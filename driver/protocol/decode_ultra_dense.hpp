@@ -17,7 +17,7 @@ public:
     static constexpr std::size_t samples_per_capsule = ultra_dense_samples_per_capsule;
     static constexpr std::size_t start_word_at = ultra_dense_start_at;
 
-    [[nodiscard]] static constexpr std::int32_t greatest_turn_q8(std::chrono::microseconds duration
+    [[nodiscard]] static constexpr std::int32_t greatest_turn_q8(std::chrono::nanoseconds duration
     ) {
         return dense_turn_limit_q8(32, duration);  // 32 although there are 64 samples
     }

@@ -22,8 +22,9 @@ struct Arrival {
 
 /// What a decoder must know of the line and the mode to time its samples (protocol.md 8).
 struct DecodeSettings {
-    /// Whole microseconds from one sample to the next, as the device reports it.
-    std::chrono::microseconds sample_duration{};
+    /// The time from one sample to the next, exactly as the device reports it. Less than a
+    /// microsecond: not known.
+    std::chrono::nanoseconds sample_duration{};
     /// Line speed in bits per second; 0: the answer type's usual one.
     std::uint32_t baud{};
     /// The line is a network, not a UART: transmission takes a fixed 100 us.

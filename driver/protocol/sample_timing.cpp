@@ -8,6 +8,7 @@ namespace sweepcast::protocol {
 namespace {
 
 using std::chrono::microseconds;
+using std::chrono::nanoseconds;
 
 std::uint32_t usual_baud(AnswerType type) {
     switch (type) {
@@ -38,12 +39,19 @@ microseconds transmission(AnswerType type, const DecodeSettings& settings) {
     return microseconds{10'000'000U * transmitted_bytes(type) / baud};
 }
 
+nanoseconds plausible(nanoseconds sample_duration) {
+    return sample_duration < microseconds{1}
+               ? nanoseconds{0}
+               : std::min<nanoseconds>(sample_duration, std::chrono::seconds{1});
+}
+
 }  // namespace
 
 SampleTiming::SampleTiming(AnswerType type, const DecodeSettings& settings)
-    : sample_duration_(
-          std::clamp(settings.sample_duration, microseconds{0}, microseconds{1'000'000})
-      )
-    , delay_(sample_duration_ + sample_duration_ / 2 + transmission(type, settings)) {}
+    : sample_duration_(plausible(settings.sample_duration))
+    , delay_(
+          std::chrono::floor<microseconds>(sample_duration_ + sample_duration_ / 2) +
+          transmission(type, settings)
+      ) {}
 
 }  // namespace sweepcast::protocol

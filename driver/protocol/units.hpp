@@ -37,4 +37,12 @@ static_assert(DistanceQ2{4000}.millimetres() == 1000.0);
 /// A moment on the host's monotonic clock, in whole microseconds.
 using SampleTime = std::chrono::time_point<std::chrono::steady_clock, std::chrono::microseconds>;
 
+/// A moment on the same clock in nanoseconds: fine enough for the periods of samples and bytes.
+using ExactTime = std::chrono::time_point<std::chrono::steady_clock, std::chrono::nanoseconds>;
+
+/// The whole microsecond in which a moment lies.
+[[nodiscard]] constexpr SampleTime to_sample_time(ExactTime time) {
+    return std::chrono::floor<std::chrono::microseconds>(time);
+}
+
 }  // namespace sweepcast::protocol

@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <memory>
@@ -42,15 +43,19 @@ of the last one do not come out.
 Examples:
   sweepcast decode bug.sweepcast > scan.csv
   zstd -dc bug.sweepcast.zst | sweepcast decode --units
-  sweepcast decode --type 0x84 --sample-us 63 scan.bin > scan.csv
+  sweepcast decode --type 0x84 --sample-us 62.5 scan.bin > scan.csv
   cat /tmp/recorded | sweepcast decode --type 82 | head)";
 
 struct DecodeArguments {
     std::string path{"-"};
     std::string type;
-    std::optional<std::uint32_t> sample_us;
+    std::optional<double> sample_us;
     bool units{};
 };
+
+std::chrono::nanoseconds in_ns(double microseconds) {
+    return std::chrono::nanoseconds(std::llround(microseconds * 1e3));
+}
 
 /// What is wrong with standard output, if anything.
 Result<void, Problem> print(SamplePrinter& printer, const Decoded& decoded) {
@@ -80,7 +85,7 @@ decode_raw(ByteSource& source, const DecodeArguments& arguments, SamplePrinter& 
     if (!type) {
         return type.error();
     }
-    const std::chrono::microseconds sample_duration(arguments.sample_us.value_or(0));
+    const auto sample_duration = in_ns(arguments.sample_us.value_or(0));
     auto decoder = protocol::Decoder::create(*type, {.sample_duration = sample_duration});
     Decoded decoded;
     std::uint64_t bytes = 0;
@@ -123,7 +128,7 @@ void introduce(const capture::CaptureHeader& header) {
 /// Decodes the streams of a capture, one after the other. Gives back how the capture ended.
 Result<CaptureReader::End, Problem> decode_streams(
     CaptureReader& reader,
-    std::chrono::microseconds sample_duration,
+    std::chrono::nanoseconds sample_duration,
     SamplePrinter& printer
 ) {
     capture::StreamFinder finder;
@@ -169,9 +174,7 @@ decode_capture(ByteSource& source, const DecodeArguments& arguments, SamplePrint
     }
     introduce(reader->header());
     const auto sample_duration =
-        arguments.sample_us
-            ? std::chrono::microseconds(*arguments.sample_us)
-            : std::chrono::round<std::chrono::microseconds>(reader->header().sample_duration);
+        arguments.sample_us ? in_ns(*arguments.sample_us) : reader->header().sample_duration;
     const auto end = decode_streams(*reader, sample_duration, printer);
     if (!end) {
         return end.error();
@@ -247,11 +250,12 @@ void add_decode_command(CLI::App& app, int& exit_code) {
         .add_option(
             "--sample-us",
             arguments->sample_us,
-            "Microseconds from sample to sample, as the mode has it; dense capsules (0x85, 0x86) "
-            "that turn faster than this allows are left out. 0: not known (default: as the capture "
-            "says)"
+            "Microseconds from sample to sample, as the mode has it, e.g. 31.25; dense capsules "
+            "(0x85, 0x86) that turn faster than this allows are left out. 0: not known (default: "
+            "as "
+            "the capture says)"
         )
-        ->check(CLI::Range(0, 1'000'000));
+        ->check(CLI::Range(0.0, 1'000'000.0));
     command.add_flag("--units", arguments->units, "Print degrees and millimetres");
     command.footer(footer);
     command.callback([arguments, &exit_code] { exit_code = decode(*arguments); });

@@ -56,8 +56,7 @@ device::CapturedSweep captured(const client::JoinedSweep& joined, const hub::Lid
     sweep.sequence = joined.sequence;
     sweep.mode = scan.mode;
     sweep.answer_type = scan.answer_type;
-    sweep.sample_duration =
-        std::chrono::duration_cast<std::chrono::microseconds>(scan.sample_duration);
+    sweep.sample_duration = scan.sample_duration;
     sweep.clock_step = scan.clock_step;
     sweep.gap = scan.gap;
     return sweep;
@@ -309,8 +308,7 @@ void RemoteLidar::publish_sweep(protocol::SampleTime arrival) {
     progress.sequence = joined.sequence;
     progress.mode = scan.mode;
     progress.answer_type = scan.answer_type;
-    progress.sample_duration =
-        std::chrono::duration_cast<std::chrono::microseconds>(scan.sample_duration);
+    progress.sample_duration = scan.sample_duration;
     progress.monotonic_to_unix = monotonic_to_unix(scan);
     progress.clock_step = scan.clock_step;
     progress.gap = scan.gap;

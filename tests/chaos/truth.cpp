@@ -53,12 +53,7 @@ void Truth::take_line(std::string_view line) {
         const auto type = protocol::AnswerType(hex_byte(line.substr(space - 2)));
         const auto& mode = *virtual_lidar::find_mode(*persona_, type);
         max_distance_mm_ = mode.max_distance_q8_m * 1000.0 / 256.0;
-        decoder_ = protocol::Decoder::create(
-                       type,
-                       {std::chrono::round<std::chrono::microseconds>(mode.sample_duration()),
-                        persona_->baud,
-                        false}
-        )
+        decoder_ = protocol::Decoder::create(type, {mode.sample_duration(), persona_->baud, false})
                        .value();
     }
     bytes_.clear();

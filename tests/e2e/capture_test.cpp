@@ -111,8 +111,7 @@ Outcome decode_raw(const Captured& captured, const std::string& scratch) {
             static_cast<std::streamsize>(captured.stream.size())
         );
     const auto type = std::to_string(static_cast<int>(captured.type) - 0x81 + 81);
-    const auto sample =
-        std::chrono::round<std::chrono::microseconds>(captured.header.sample_duration);
+    const std::chrono::duration<double, std::micro> sample = captured.header.sample_duration;
     return run({"decode", "--type", type, "--sample-us", std::to_string(sample.count()), scratch});
 }
 

@@ -60,7 +60,7 @@ TEST_P(DecodeVectorTest, AFileComesOutAsItsVectorSays) {
          "--type",
          number(vector.type),
          "--sample-us",
-         std::to_string(vector.settings.sample_duration.count()),
+         std::to_string(vector.settings.sample_duration / std::chrono::microseconds(1)),
          vector_path(GetParam())}
     );
     EXPECT_EQ(outcome.exit_code, 0);

@@ -152,7 +152,7 @@ void LineScan::find_offset(
 ) {
     protocol::Decoded decoded;
     protocol::DecodeSettings settings;
-    settings.sample_duration = std::chrono::round<std::chrono::microseconds>(sample_duration_);
+    settings.sample_duration = sample_duration_;
     protocol::Decoder::create(type, settings)->push(bytes, {}, decoded);
     std::vector<double> offsets;
     for (std::size_t i = 0; i < decoded.samples.size(); ++i) {

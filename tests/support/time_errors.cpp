@@ -22,8 +22,7 @@ double quantile(const std::vector<double>& sorted, double part) {
 }  // namespace
 
 std::vector<Sweep> reckoned_back(const LineScan& scan, protocol::AnswerType type) {
-    const auto rounded = std::chrono::round<std::chrono::microseconds>(scan.sample_duration());
-    auto decoder = protocol::Decoder::create(type, {rounded, scan.baud(), false});
+    auto decoder = protocol::Decoder::create(type, {scan.sample_duration(), scan.baud(), false});
     protocol::SweepAssembler assembler;
     protocol::Decoded decoded;
     std::vector<Sweep> sweeps;

@@ -90,7 +90,7 @@ captured(protocol::Sweep sweep, const Persona& persona, const device::ScanMode& 
     result.lidar_number = 1;
     result.mode = mode.name;
     result.answer_type = mode.answer_type;
-    result.sample_duration = std::chrono::round<std::chrono::microseconds>(mode.sample_duration);
+    result.sample_duration = mode.sample_duration;
     result.monotonic_to_unix = 1'700'000'000s;
     return result;
 }

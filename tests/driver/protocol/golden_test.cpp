@@ -70,7 +70,9 @@ std::vector<SampleTime> corrected_times(const test::Vector& vector) {
         }
         if (vector.type == AnswerType::hq) {
             const auto samples_later = static_cast<int>(95 - i % 96);
-            times[i] -= samples_later * vector.settings.sample_duration;
+            times[i] -= samples_later * std::chrono::duration_cast<std::chrono::microseconds>(
+                                            vector.settings.sample_duration
+                                        );
         }
     }
     return times;

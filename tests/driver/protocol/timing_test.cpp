@@ -1,4 +1,5 @@
 // When samples were taken, if the bytes of a block are known to have come one after another.
+#include "driver/protocol/encode_dense.hpp"
 #include "driver/protocol/encode_express.hpp"
 #include "driver/protocol/encode_normal.hpp"
 #include "driver/protocol/sample_timing.hpp"
@@ -85,6 +86,28 @@ TEST(SampleTimeTest, ACapsuleArrivedWithItsOwnLastByteNotTheNextCapsules) {
     EXPECT_EQ(decoded.samples.front().time, at(9'840) - delay - 31 * microseconds{500});
 }
 
+TEST(SampleTimeTest, ASamplePeriodThatIsNoWholeMicrosecondIsTakenExactly) {
+    Bytes bytes;
+    for (const auto angle : {0, 640}) {
+        const auto capsule = encode_dense(
+            {.restart = false,
+             .start_angle = {static_cast<std::uint16_t>(angle)},
+             .distances_mm = {}}
+        );
+        bytes.insert(bytes.end(), capsule.begin(), capsule.end());
+    }
+    constexpr nanoseconds period{31'250};
+    auto decoder = make_decoder(AnswerType::dense, {.sample_duration = period, .ethernet = true});
+    Decoded decoded;
+    decoder.push(bytes, {at(10'000), {}}, decoded);
+    ASSERT_EQ(decoded.samples.size(), 40U);
+    const auto last = at(10'000) - microseconds{31 + 15 + 100};
+    for (int i = 0; i < 40; ++i) {
+        const auto& sample = decoded.samples.at(static_cast<std::size_t>(i));
+        EXPECT_EQ(sample.time, to_sample_time(last - (39 - i) * period)) << i;
+    }
+}
+
 TEST(SampleTimingTest, TheLineTakesTheUsualTimeIfItsSpeedIsNotKnown) {
     const SampleTiming unknown{AnswerType::normal, {.sample_duration = microseconds{504}}};
     const SampleTiming known{
@@ -97,13 +120,15 @@ TEST(SampleTimingTest, TheLineTakesTheUsualTimeIfItsSpeedIsNotKnown) {
 TEST(SampleTimingTest, SurvivesDurationsThatNoScannerHas) {
     const SampleTiming endless{
         AnswerType::express,
-        {.sample_duration = microseconds::max(), .baud = 1, .ethernet = false}};
+        {.sample_duration = nanoseconds::max(), .baud = 1, .ethernet = false}};
     EXPECT_EQ(endless.sample_duration(), microseconds{1'000'000});
     EXPECT_EQ(endless.last_sample(at(0)), at(0) - microseconds{1'500'000 + 840'000'000});
     const SampleTiming negative{
         AnswerType::express,
-        {.sample_duration = microseconds::min(), .baud = 0, .ethernet = true}};
+        {.sample_duration = nanoseconds::min(), .baud = 0, .ethernet = true}};
     EXPECT_EQ(negative.sample_duration(), microseconds{0});
+    const SampleTiming tiny{AnswerType::dense, {.sample_duration = nanoseconds{15}}};
+    EXPECT_EQ(tiny.sample_duration(), nanoseconds{0});
 }
 
 }  // namespace

@@ -64,9 +64,7 @@ protected:
         host.run(duration);
         auto decoder = protocol::Decoder::create(
             type(),
-            {.sample_duration =
-                 std::chrono::round<std::chrono::microseconds>(mode().sample_duration()),
-             .baud = persona().baud}
+            {.sample_duration = mode().sample_duration(), .baud = persona().baud}
         );
         protocol::Decoded decoded;
         decoder->push(host.measurements(), {}, decoded);
