@@ -109,7 +109,6 @@ asio::awaitable<void> Client::set_wish(std::optional<v1::Subscribe> wish) {
     impl_->wish = std::move(wish);
     impl_->wish_was_set = true;
     impl_->refused_lidar.clear();
-    impl_->missed = {};
     co_await impl_->send_wish();
 }
 
@@ -279,6 +278,8 @@ Result<std::optional<Event>, Problem> Client::Impl::take(const v1::ServerMessage
     case v1::ServerMessage::kStats:
         return std::optional<Event>(message.stats());
     case v1::ServerMessage::kSubscribed:
+        // The frames before it were of the wish before, and are no measure for those after it.
+        missed = {};
         return std::optional<Event>(message.subscribed());
     case v1::ServerMessage::kError:
         if (message.error().code() == "lidar_not_found" && wish) {

@@ -11,9 +11,10 @@ class Frame;
 
 namespace sweepcast::client {
 
-/// Of one connection, and one wish. Sweeps: gap - omitted. Sectors: at least so many, for how many
-/// a sweep has is not known: those between two of a sweep, one for an end that did not come, those
-/// before the first that came of the next, and one for each sweep of which nothing came.
+/// Of one connection, and one wish: a count begins with Subscribed. Sweeps: gap - omitted. Sectors:
+/// at least so many, for how many a sweep has is not known: those between two of a sweep, one for
+/// an end that did not come, those before the first that came of the next, and one for each sweep
+/// of which nothing came.
 class MissedFrames {
 public:
     /// How many are missing directly before this frame.

@@ -133,6 +133,10 @@ class Page {
       case "frame":
         this.show(message.value);
         break;
+      case "subscribed":
+        // Frames from here on are of another subscription: the first of them opens no gap.
+        this.counter.resume();
+        break;
       case "error":
         this.trouble.show(message.value);
         break;

@@ -136,6 +136,66 @@ TEST_F(ClientTest, TellsOfGreetingStatesAndScans) {
     gateway.join();
 }
 
+v1::ServerMessage subscribed() {
+    v1::ServerMessage message;
+    message.mutable_subscribed();
+    return message;
+}
+
+TEST_F(ClientTest, CountsMissedFramesOfAWishFromItsAnswerOn) {
+    BlockingClient client(url(), impatient());
+    std::thread gateway([this] {
+        auto peer = accept();
+        peer.greet();
+        peer.hear();
+        peer.say(subscribed());
+        peer.say(*sweep_message(5));
+        peer.hear();  // the next wish, which is answered after two frames of the one before
+        peer.say(*sweep_message(6));
+        peer.say(*sweep_message(8));
+        peer.say(subscribed());
+        peer.say(*sweep_message(12));
+        peer.say(*sweep_message(14));
+        peer.hear();
+    });
+    expect_next<Connected>(client);
+    expect_next<v1::Subscribed>(client);
+    EXPECT_EQ(expect_next<Scan>(client).missed, 0U);
+    client.set_wish(v1::Subscribe{});
+    EXPECT_EQ(expect_next<Scan>(client).missed, 0U) << "sweep 6";
+    EXPECT_EQ(expect_next<Scan>(client).missed, 1U) << "sweep 8";
+    expect_next<v1::Subscribed>(client);
+    EXPECT_EQ(expect_next<Scan>(client).missed, 0U) << "the first of the new wish";
+    EXPECT_EQ(expect_next<Scan>(client).missed, 1U);
+    client.set_wish(std::nullopt);
+    gateway.join();
+}
+
+TEST_F(ClientTest, GoesOnCountingMissedFramesIfAWishIsRefused) {
+    BlockingClient client(url(), impatient());
+    std::thread gateway([this] {
+        auto peer = accept();
+        peer.greet();
+        peer.hear();
+        peer.say(subscribed());
+        peer.say(*sweep_message(5));
+        peer.hear();
+        v1::ServerMessage refusal;
+        refusal.mutable_error()->set_code("bad_value");
+        peer.say(refusal);
+        peer.say(*sweep_message(8));
+        peer.hear();
+    });
+    expect_next<Connected>(client);
+    expect_next<v1::Subscribed>(client);
+    expect_next<Scan>(client);
+    client.set_wish(v1::Subscribe{});
+    expect_next<v1::StreamError>(client);
+    EXPECT_EQ(expect_next<Scan>(client).missed, 2U);
+    client.set_wish(std::nullopt);
+    gateway.join();
+}
+
 TEST_F(ClientTest, ConnectsAgainAndRepeatsItsWish) {
     auto options = impatient();
     options.wish->set_every_nth(3);
