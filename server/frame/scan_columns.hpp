@@ -14,13 +14,13 @@ class Scan;
 
 namespace sweepcast::frame {
 
-/// The most samples of a scan. The densest scanner takes about 3,200 a turn, and no sweep has more
-/// than 8192.
+/// The most samples of a scan. The densest scanner takes about 3,200 per revolution, and no sweep
+/// has more than protocol::max_sweep_samples, 16384.
 constexpr std::size_t max_samples = 65536;
 
 /// Puts the samples into `scan`, whatever it held before; its memory is used again.
 /// Unless `format` wants less, every sample comes back exactly. Of the rest: the time of a sample
-/// farther than farthest_us from the first becomes the farthest, a period that no uint32 of
+/// farther than farthest_us from the earliest becomes the farthest, a period that no uint32 of
 /// microseconds holds the nearest that does, a wall-clock time outside 1970..2262 becomes 0, and a
 /// mode's name keeps printable ASCII only. Throws std::length_error for more than max_samples,
 /// which no sweep assembler gives out.

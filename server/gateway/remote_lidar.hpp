@@ -37,7 +37,7 @@ struct RemotePlace {
 /// sectors come as sectors (one for each 30 degrees) and are joined to sweeps:
 /// a sweep of which one is missing is left out, and the gap in the sequence
 /// shows it. The state is the other gateway's; while that cannot be reached,
-/// `failed` with the cause. Its URL is told as "<where it is there> via <where
+/// `backing_off` with the cause. Its URL is told as "<where it is there> via <where
 /// we have it from>". Commands are refused: they are for its own gateway.
 class RemoteLidar final : public GatewayLidar {
 public:
