@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -30,6 +31,8 @@ struct Api::LidarRoute {
     std::string_view method;
     std::string_view after_id;
     LidarHandler handler;
+    /// The only query parameter that the route takes; empty: it takes none.
+    std::string_view parameter{};
 };
 
 namespace {
@@ -51,7 +54,7 @@ const Api::Route Api::routes[] = {
 /// Below /api/v1/lidars/ID.
 const Api::LidarRoute Api::lidar_routes[] = {
     {"GET", "", &Api::get_lidar},
-    {"GET", "/scan", &Api::latest_scan},
+    {"GET", "/scan", &Api::latest_scan, "format"},
     {"GET", "/diagnosis", &Api::diagnosis},
     {"PATCH", "", &Api::update},
     {"POST", "/start", &Api::start},
@@ -93,6 +96,29 @@ private:
     std::string text_;
 };
 
+/// Refuses query parameters other than `known`, the only one that a route takes (empty: none).
+std::optional<Response> refuse_parameters(const Request& request, std::string_view known = {}) {
+    for (const auto& [name, value] : request.query) {
+        if (name != known) {
+            return error_response(
+                400,
+                "unknown_parameter",
+                fmt::format("no parameter \"{}\"", name),
+                known.empty() ? "this takes no parameters" : fmt::format("parameters: {}", known)
+            );
+        }
+    }
+    if (request.query.size() > 1) {
+        return error_response(
+            400,
+            "repeated_parameter",
+            fmt::format("\"{}\" is there twice", known),
+            "say it once"
+        );
+    }
+    return std::nullopt;
+}
+
 Response lidar_response(const hub::LidarSnapshot& lidar) {
     v1::Lidar message;
     stream::to_message(lidar, message);
@@ -119,6 +145,9 @@ asio::awaitable<Response> Api::handle(Request request) const {
             continue;
         }
         if (method == route.method) {
+            if (auto refusal = refuse_parameters(request)) {
+                co_return std::move(*refusal);
+            }
             co_return co_await (this->*route.handler)();
         }
         allowed.add(route.method);
@@ -129,6 +158,9 @@ asio::awaitable<Response> Api::handle(Request request) const {
             continue;
         }
         if (method == route.method) {
+            if (auto refusal = refuse_parameters(request, route.parameter)) {
+                co_return std::move(*refusal);
+            }
             co_return co_await handle_lidar(request, path->id, route.handler);
         }
         allowed.add(route.method);
@@ -241,11 +273,21 @@ asio::awaitable<Response> Api::latest_scan(const Request& request, hub::LidarSna
             fmt::format("start it: POST /api/v1/lidars/{}/start", lidar->id)
         );
     }
+    v1::Lidar state;
+    stream::to_message(*lidar, state);
+    const auto age = age_ms(*sweep, std::chrono::steady_clock::now());
     if (wants_csv(request)) {
-        co_return Response{200, "text/csv; charset=utf-8", to_csv(*sweep), {}};
+        co_return Response{
+            200,
+            "text/csv; charset=utf-8",
+            to_csv(*sweep),
+            {{"Lidar-State", v1::Lidar::State_Name(state.state())},
+             {"Sweep-Age-Ms", std::to_string(age)}}};
     }
     v1::LatestScan message;
     to_message(*sweep, message);
+    message.set_state(state.state());
+    message.set_age_ms(age);
     co_return Response{200, "application/json", to_json(message), {}};
 }
 

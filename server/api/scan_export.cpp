@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <iterator>
+#include <limits>
+#include <vector>
 
 namespace sweepcast::api {
 
@@ -11,6 +14,11 @@ namespace {
 
 std::int64_t microseconds_after(protocol::SampleTime first, protocol::SampleTime time) {
     return (time - first).count();
+}
+
+/// When the earliest of the samples was taken; there must be one. Bins go by angle, not by time.
+protocol::SampleTime earliest(const std::vector<protocol::Sample>& samples) {
+    return std::ranges::min_element(samples, {}, &protocol::Sample::time)->time;
 }
 
 }  // namespace
@@ -24,12 +32,14 @@ void to_message(const device::CapturedSweep& captured, v1::LatestScan& scan) {
     if (samples.empty()) {
         return;
     }
-    const auto first = samples.front().time;
+    const auto first = earliest(samples);
     const std::chrono::nanoseconds unix_time =
         first.time_since_epoch() + captured.monotonic_to_unix;
-    const auto seconds = std::chrono::floor<std::chrono::seconds>(unix_time);
-    scan.mutable_time()->set_seconds(seconds.count());
-    scan.mutable_time()->set_nanos(static_cast<std::int32_t>((unix_time - seconds).count()));
+    if (unix_time.count() > 0) {
+        const auto seconds = std::chrono::floor<std::chrono::seconds>(unix_time);
+        scan.mutable_time()->set_seconds(seconds.count());
+        scan.mutable_time()->set_nanos(static_cast<std::int32_t>((unix_time - seconds).count()));
+    }
     for (const auto& sample : samples) {
         scan.add_angle_deg(sample.angle.degrees());
         scan.add_distance_mm(sample.distance.millimetres());
@@ -38,9 +48,21 @@ void to_message(const device::CapturedSweep& captured, v1::LatestScan& scan) {
     }
 }
 
+std::uint32_t
+age_ms(const device::CapturedSweep& captured, std::chrono::steady_clock::time_point now) {
+    constexpr std::int64_t most = std::numeric_limits<std::uint32_t>::max();
+    if (captured.sweep.samples.empty()) {
+        return 0;
+    }
+    const auto age =
+        std::chrono::floor<std::chrono::milliseconds>(now - captured.sweep.samples.back().time);
+    return static_cast<std::uint32_t>(std::clamp<std::int64_t>(age.count(), 0, most));
+}
+
 std::string to_csv(const device::CapturedSweep& captured) {
     std::string text = "angle_deg,distance_mm,quality,time_us\n";
     const auto& samples = captured.sweep.samples;
+    const auto first = samples.empty() ? protocol::SampleTime{} : earliest(samples);
     for (const auto& sample : samples) {
         fmt::format_to(
             std::back_inserter(text),
@@ -48,7 +70,7 @@ std::string to_csv(const device::CapturedSweep& captured) {
             sample.angle.degrees(),
             sample.distance.millimetres(),
             sample.quality,
-            microseconds_after(samples.front().time, sample.time)
+            microseconds_after(first, sample.time)
         );
     }
     return text;

@@ -104,12 +104,30 @@ protected:
         return answered.get();
     }
 
-    void publish_sweep() {
+    /// A sweep that ended so long ago.
+    void publish_sweep(std::chrono::milliseconds age = {}) {
         auto sweep = std::make_shared<device::CapturedSweep>();
         sweep->lidar = "A0E1C2D3";
         sweep->sequence = 9;
         sweep->sweep.samples.resize(3);
+        for (auto& sample : sweep->sweep.samples) {
+            sample.time = std::chrono::floor<std::chrono::microseconds>(
+                std::chrono::steady_clock::now() - age
+            );
+        }
         hub.deliver(hub::SweepNews{.lidar = 1, .sweep = sweep, .frames = {}});
+    }
+
+    void publish_phase(device::Phase phase) {
+        auto lidar = std::make_shared<hub::LidarSnapshot>(*control.snapshot);
+        lidar->state.phase = phase;
+        hub.deliver(hub::StateNews{lidar, stream::state_message(*lidar)});
+    }
+
+    static std::string header_of(const Response& response, std::string_view name) {
+        const auto found =
+            std::ranges::find(response.headers, name, &std::pair<std::string, std::string>::first);
+        return found != response.headers.end() ? found->second : "";
     }
 
     static v1::Error error_in(const Response& response) {
@@ -322,6 +340,54 @@ TEST_F(ApiTest, GivesTheLatestSweepAsCsvByFormatOrAccept) {
     EXPECT_EQ(by_format.content_type, "text/csv; charset=utf-8");
     EXPECT_THAT(by_format.body, HasSubstr("angle_deg,distance_mm,quality,time_us\n"));
     EXPECT_EQ(by_accept.body, by_format.body);
+}
+
+TEST_F(ApiTest, SaysThatTheLatestSweepOfAStoppedLidarIsOld) {
+    publish_sweep(std::chrono::hours(1));
+    publish_phase(device::Phase::idle);
+    const auto response = ask("GET", "/api/v1/lidars/A0E1C2D3/scan");
+    v1::LatestScan scan;
+    ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(response.body, &scan).ok());
+    EXPECT_EQ(scan.state(), v1::Lidar::IDLE);
+    EXPECT_GE(scan.age_ms(), 3'600'000U);
+    const auto csv = ask("GET", "/api/v1/lidars/A0E1C2D3/scan?format=csv");
+    EXPECT_EQ(header_of(csv, "Lidar-State"), "IDLE");
+    EXPECT_GE(std::stoull(header_of(csv, "Sweep-Age-Ms")), 3'600'000U);
+}
+
+TEST_F(ApiTest, RefusesParametersThatItDoesNotKnow) {
+    publish_sweep();
+    const auto scan = ask("GET", "/api/v1/lidars/A0E1C2D3/scan?format=csv&bins=360");
+    EXPECT_EQ(scan.status, 400);
+    EXPECT_EQ(error_in(scan).code(), "unknown_parameter");
+    EXPECT_EQ(error_in(scan).message(), "no parameter \"bins\"");
+    EXPECT_EQ(error_in(scan).hint(), "parameters: format");
+    const std::string lidar = "/api/v1/lidars/A0E1C2D3";
+    const std::vector<std::pair<std::string, std::string>> others{
+        {"GET", "/healthz"},
+        {"GET", "/api/v1/lidars"},
+        {"GET", "/api/v1/dictionaries/" + std::to_string(frame::dictionary_id())},
+        {"GET", lidar},
+        {"HEAD", lidar},
+        {"GET", lidar + "/diagnosis"},
+        {"PATCH", lidar},
+        {"POST", lidar + "/start"},
+        {"POST", lidar + "/stop"},
+        {"POST", lidar + "/reset"}};
+    for (const auto& [method, path] : others) {
+        const auto refused = ask(method, path + "?mode=Express");
+        EXPECT_EQ(refused.status, 400) << method << " " << path;
+        EXPECT_EQ(error_in(refused).code(), "unknown_parameter") << path;
+        EXPECT_EQ(error_in(refused).hint(), "this takes no parameters") << path;
+    }
+    EXPECT_TRUE(control.orders.empty()) << "nothing was done";
+}
+
+TEST_F(ApiTest, RefusesAParameterThatIsThereTwice) {
+    publish_sweep();
+    const auto response = ask("GET", "/api/v1/lidars/A0E1C2D3/scan?format=csv&format=json");
+    EXPECT_EQ(response.status, 400);
+    EXPECT_EQ(error_in(response).code(), "repeated_parameter");
 }
 
 TEST_F(ApiTest, HealthCountsLidarsAndSubscribers) {
