@@ -67,15 +67,16 @@ public:
         auto which = fmt::format("{},{}", scan.lidar, scan.sequence);
         which += sectors_ ? fmt::format(",{}", scan.sector) : "";
         for (const auto& sample : scan.scan.sweep.samples) {
+            const auto unix_time = scan.scan.unix_time(sample);
             fmt::format_to(
                 std::back_inserter(text_),
                 "{},{},{:.4f},{:.2f},{},{}\n",
                 which,
-                scan.scan.unix_time(sample).count(),
-                sample.angle.degrees(),
+                unix_time ? std::to_string(unix_time->count()) : "",
+                scan.scan.degrees(sample),
                 sample.distance.millimetres(),
-                sample.quality,
-                sample.flag
+                scan.scan.without_quality ? "" : std::to_string(sample.quality),
+                scan.scan.without_flags ? "" : std::to_string(sample.flag)
             );
         }
         write(text_);
@@ -87,7 +88,7 @@ private:
     std::string text_;
 };
 
-/// As the API exports a sweep.
+/// The sweep as the API exports one.
 device::CapturedSweep to_captured(const client::Scan& from) {
     device::CapturedSweep captured;
     captured.sweep = from.scan.sweep;
@@ -95,22 +96,34 @@ device::CapturedSweep to_captured(const client::Scan& from) {
     captured.sequence = from.sequence;
     captured.mode = from.scan.mode;
     captured.answer_type = from.scan.answer_type;
-    if (!captured.sweep.samples.empty()) {
-        captured.monotonic_to_unix =
-            from.scan.first_unix - captured.sweep.samples.front().time.time_since_epoch();
-    }
+    captured.monotonic_to_unix = from.scan.first_unix - from.scan.first_time.time_since_epoch();
     return captured;
+}
+
+/// As the API exports a sweep, without the columns that were left out.
+void to_message(const client::Scan& from, v1::LatestScan& message) {
+    api::to_message(to_captured(from), message);
+    int k = 0;
+    for (const auto& sample : from.scan.sweep.samples) {
+        message.set_angle_deg(k++, from.scan.degrees(sample));
+    }
+    if (from.scan.without_times) {
+        message.clear_time_us();
+    }
+    if (from.scan.without_quality) {
+        message.clear_quality();
+    }
+    if (from.kind == v1::SECTOR) {
+        message.set_sector(from.sector);
+        message.set_last(from.last);
+    }
 }
 
 class JsonOutput final : public LinesOutput {
 public:
     void on_scan(const client::Scan& scan) override {
         v1::LatestScan message;
-        api::to_message(to_captured(scan), message);
-        if (scan.kind == v1::SECTOR) {
-            message.set_sector(scan.sector);
-            message.set_last(scan.last);
-        }
+        to_message(scan, message);
         write(api::to_json_line(message));
     }
 };

@@ -52,6 +52,7 @@ bool SweepJoiner::go_on(Scan scan) {
     to.period = more.period;
     to.losses += more.losses;
     to.time_uncertainty = std::max(to.time_uncertainty, more.time_uncertainty);
+    sweep_.scan.without_times |= scan.scan.without_times;
     ++next_sector_;
     sweep_.complete = scan.last;
     under_way_ = !sweep_.complete;

@@ -203,14 +203,19 @@ bool steps_fit(const v1::Scan& scan, std::size_t samples) {
     return scan.time_step_ps_size() == scan.time_run_size() && in_runs == wanted;
 }
 
+/// The moment from which the time column counts.
+protocol::SampleTime first_time(const v1::Scan& scan) {
+    const auto first_ns =
+        std::chrono::nanoseconds(static_cast<std::int64_t>(scan.first_monotonic_ns()));
+    return protocol::SampleTime(std::chrono::floor<std::chrono::microseconds>(first_ns));
+}
+
 /// Any time is one that a sample can have: sums are modulo 2^64.
 Result<void> read_times(const v1::Scan& scan, Samples samples) {
     if (!steps_fit(scan, samples.size())) {
         return error_code(errc::column_length_wrong);
     }
-    const auto first_ns =
-        std::chrono::nanoseconds(static_cast<std::int64_t>(scan.first_monotonic_ns()));
-    const protocol::SampleTime first(std::chrono::floor<std::chrono::microseconds>(first_ns));
+    const auto first = first_time(scan);
     auto to_time = [first](std::uint64_t ps) {
         const std::chrono::duration<std::int64_t, std::pico> after(static_cast<std::int64_t>(ps));
         return first + std::chrono::floor<std::chrono::microseconds>(after);
@@ -223,8 +228,8 @@ Result<void> read_times(const v1::Scan& scan, Samples samples) {
             samples[i].time = to_time(ps);
         }
     }
-    for (; i < samples.size(); ++i) {  // left out
-        samples[i].time = to_time(std::uint64_t{scan.sample_period_ns()} * 1000 * i);
+    for (; i < samples.size(); ++i) {  // left out: nothing tells how far apart they are
+        samples[i].time = first;
     }
     return {};
 }
@@ -263,6 +268,8 @@ Result<DecodedScan> from_columns(const v1::Scan& scan) {
     decoded.mode = scan.mode();
     decoded.answer_type = type;
     decoded.sample_duration = std::chrono::nanoseconds(scan.sample_period_ns());
+    decoded.first_time = first_time(scan);
+    decoded.angle_units_per_turn = scan.angle_units_per_turn();
     decoded.first_unix = std::chrono::nanoseconds(static_cast<std::int64_t>(scan.first_unix_ns()));
     decoded.sweep.time_uncertainty = std::chrono::microseconds(scan.time_uncertainty_us());
     decoded.clock_step = std::chrono::nanoseconds(scan.wall_clock_step_ns());

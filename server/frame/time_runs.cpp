@@ -102,16 +102,16 @@ private:
     std::vector<Point> highs_;
 };
 
-/// Microseconds since `first`.
-std::int64_t since(protocol::SampleTime first, protocol::SampleTime time) {
+/// Microseconds since `begin`.
+std::int64_t since(protocol::SampleTime begin, protocol::SampleTime time) {
     std::int64_t us = 0;
     const bool overflows = __builtin_sub_overflow(
         time.time_since_epoch().count(),
-        first.time_since_epoch().count(),
+        begin.time_since_epoch().count(),
         &us
     );
     if (overflows) {
-        return time < first ? -farthest_us : farthest_us;
+        return time < begin ? -farthest_us : farthest_us;
     }
     return std::clamp(us, -farthest_us, farthest_us);
 }
@@ -129,12 +129,12 @@ void append(const Line& line, std::int64_t& position, std::vector<TimeRun>& runs
 
 }  // namespace
 
-void to_time_runs(Samples samples, std::vector<TimeRun>& runs) {
+void to_time_runs(Samples samples, protocol::SampleTime begin, std::vector<TimeRun>& runs) {
     runs.clear();
     Line line;
     std::int64_t position = 0;
     for (const auto& sample : samples) {
-        const auto us = since(samples.front().time, sample.time);
+        const auto us = since(begin, sample.time);
         if (!line.take(us)) {
             append(line, position, runs);
             line.clear();

@@ -179,14 +179,16 @@ void write_times(const FrameContent& content, bool left_out, v1::Scan& scan) {
     if (content.samples.empty()) {
         return;
     }
-    const std::int64_t first_ns = to_ns(content.samples.front().time);
+    // Of bins, which go by angle, any sample may be the earliest.
+    const auto first = std::ranges::min_element(content.samples, {}, &Sample::time)->time;
+    const std::int64_t first_ns = to_ns(first);
     scan.set_first_monotonic_ns(static_cast<std::uint64_t>(first_ns));
     scan.set_first_unix_ns(unix_ns(first_ns, content.monotonic_to_unix));
     if (left_out) {
         scan.add_left_out(v1::TIME);
     } else {
         std::vector<TimeRun> runs;
-        to_time_runs(content.samples, runs);
+        to_time_runs(content.samples, first, runs);
         for (const auto& run : runs) {
             scan.add_time_run(run.count);
             scan.add_time_step_ps(run.step_ps);

@@ -65,7 +65,7 @@ device::CapturedSweep captured(const client::JoinedSweep& joined, const hub::Lid
 /// What brings the times of a scan to UNIX time; to before it, which is no
 /// time, if that is not known.
 std::chrono::nanoseconds monotonic_to_unix(const frame::DecodedScan& scan) {
-    const auto first = scan.sweep.samples.front().time.time_since_epoch();
+    const auto first = scan.first_time.time_since_epoch();
     return scan.first_unix.count() > 0 ? scan.first_unix - first : -first - 1ns;
 }
 
@@ -277,12 +277,21 @@ void RemoteLidar::take(client::Scan scan) {
     if (samples.empty() || !chosen_ || there_.at(*chosen_).id() != scan.lidar) {
         return;
     }
+    if (scan.scan.without_times) {
+        give_up(
+            {{},
+             fmt::format("{} sends scans without times, which were asked for", place_.url),
+             "update the gateway there"}
+        );
+        return;
+    }
     const auto arrival =
         std::chrono::floor<std::chrono::microseconds>(std::chrono::steady_clock::now());
     clock_.hear(samples.back().time, arrival);
     if (scan.kind == v1::SWEEP || scan.sector == 0) {
         offset_ = clock_.offset();
     }
+    scan.scan.first_time += offset_;
     for (auto& sample : samples) {
         sample.time += offset_;
     }

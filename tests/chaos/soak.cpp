@@ -43,7 +43,7 @@ void take_age(Ages& ages, const test::ReceivedSweep& sweep) {
     const auto& samples = sweep.scan.sweep.samples;
     if (!samples.empty()) {
         const auto now = std::chrono::system_clock::now().time_since_epoch();
-        ages[sweep.lidar].emplace_back(now - sweep.scan.unix_time(samples.back()));
+        ages[sweep.lidar].emplace_back(now - sweep.scan.unix_time(samples.back()).value());
     }
 }
 

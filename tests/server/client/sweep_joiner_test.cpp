@@ -42,6 +42,16 @@ TEST(SweepJoinerTest, SectorsBecomeASweep) {
     EXPECT_EQ(joiner.lost(), 0U);
 }
 
+TEST(SweepJoinerTest, TimesAreUnknownIfThoseOfOneSectorAre) {
+    SweepJoiner joiner;
+    joiner.take(sector(7, 0));
+    auto without = sector(7, 1);
+    without.scan.without_times = true;
+    joiner.take(without);
+    joiner.take(sector(7, 2, true));
+    EXPECT_TRUE(joiner.sweep().scan.without_times);
+}
+
 TEST(SweepJoinerTest, AWholeSweepIsOne) {
     SweepJoiner joiner;
     Scan sweep;

@@ -139,7 +139,9 @@ TEST(ScanColumns, LeaveOutWhatIsNotWanted) {
     EXPECT_TRUE(decoded.without_quality && decoded.without_flags && decoded.without_times);
     EXPECT_EQ(decoded.sweep.samples[2].quality, 0);
     EXPECT_EQ(decoded.sweep.samples[2].flag, 0);
-    EXPECT_EQ(decoded.sweep.samples[2].time, protocol::SampleTime(1500us));  // as reported
+    for (const auto& each : decoded.sweep.samples) {
+        EXPECT_EQ(each.time, protocol::SampleTime(1000us)) << "later times are not made up";
+    }
     EXPECT_EQ(decoded.sweep.samples[2].distance.raw, 4U);
 }
 
@@ -164,6 +166,16 @@ TEST(ScanColumns, TellWhenTheFirstSampleWasTakenOnBothClocks) {
     const auto scan = columns_of(captured);
     EXPECT_EQ(scan.first_monotonic_ns(), 1'000'000U);
     EXPECT_EQ(scan.first_unix_ns(), 1'700'000'000'001'000'000U);
+}
+
+TEST(ScanColumns, CountTimesFromTheEarliestSampleWhicheverItIs) {
+    auto captured = sweep_of({sample(0, 4, 1500), sample(0, 4, 1000), sample(0, 4, 1300)});
+    captured.monotonic_to_unix = 5s;
+    const auto scan = columns_of(captured);
+    EXPECT_EQ(scan.first_monotonic_ns(), 1'000'000U);
+    EXPECT_EQ(scan.first_unix_ns(), 5'001'000'000U);
+    EXPECT_GE(scan.time_step_ps(0), 500'000'000);
+    EXPECT_EQ(there_and_back(captured), captured.sweep.samples);
 }
 
 TEST(ScanColumns, TellNoWallClockTimeThatCannotBe) {
