@@ -18,6 +18,9 @@ enum class BinPick : std::uint8_t {
     minimum,        ///< the one with the nearest echo
 };
 
+/// How much of a revolution a sector spans if its subscriber does not say, in 1/1000 degree.
+constexpr std::uint32_t usual_sector_mdeg = 30'000;
+
 /// The circle cut into equal parts, the first beginning at angle 0.
 struct Bins {
     std::uint32_t count{};  ///< 0: samples as measured

@@ -40,7 +40,7 @@ public:
         /// Sets what to deliver from now on; none: state messages only. Frames of the wish before
         /// that still wait are forgotten, then come `answer`, if there is one, and the latest sweep
         /// of each lidar wanted, if sweeps are.
-        /// False if there are too many different wishes already: nothing changes then.
+        /// Returns false, and changes nothing, if there are too many distinct requests already.
         [[nodiscard]] bool
         set_wish(const std::optional<Wish>& wish, const frame::WireMessagePtr& answer = nullptr);
 
@@ -77,8 +77,6 @@ public:
     ) const;
     /// Subscribers of all workers that want frames.
     [[nodiscard]] std::uint32_t subscribers() const { return variants_.subscribers(); }
-    /// The wishes in use.
-    [[nodiscard]] const Variants& variants() const { return variants_; }
 
 private:
     using Members = std::vector<Subscription*>;

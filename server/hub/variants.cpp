@@ -4,15 +4,34 @@
 
 namespace sweepcast::hub {
 
+bool Variants::is_plain(const frame::Wish& wish) {
+    const auto& format = wish.format;
+    frame::Wish plain;
+    plain.kind = wish.kind;
+    plain.sector_mdeg = wish.kind == frame::Kind::sector ? frame::usual_sector_mdeg : 0;
+    plain.format.compression = format.compression;
+    plain.format.dictionary = format.dictionary;
+    plain.format.leave_out_flags = format.leave_out_flags && format.leave_out_times;
+    plain.format.leave_out_times = plain.format.leave_out_flags;
+    return wish == plain;
+}
+
+/// Returns whether one more distinct request may be served. The caller holds the lock.
+bool Variants::has_room(const VariantPtr& replaced) const {
+    const auto taken = std::ranges::count_if(uses_, [&](const Use& use) {
+        const bool leaves = use.variant == replaced && use.subscribers == 1;
+        return !leaves && !is_plain(use.variant->wish());
+    });
+    return static_cast<std::size_t>(taken) < most;
+}
+
 VariantPtr Variants::acquire(const Wish& wish, const VariantPtr& replaced) {
     const std::lock_guard lock(mutex_);
     auto use = std::ranges::find_if(uses_, [&](const Use& used) {
         return used.variant->wish() == wish.frames;
     });
     if (use == uses_.end()) {
-        const auto leaving = std::ranges::find(uses_, replaced, &Use::variant);
-        const bool makes_room = leaving != uses_.end() && leaving->subscribers == 1;
-        if (uses_.size() >= most + (makes_room ? 1 : 0)) {
+        if (!is_plain(wish.frames) && !has_room(replaced)) {
             return nullptr;
         }
         uses_.push_back({std::make_shared<const Variant>(wish.frames)});
@@ -49,12 +68,6 @@ std::vector<VariantPtr> Variants::wanted(std::uint32_t lidar) const {
         }
     }
     return variants;
-}
-
-VariantPtr Variants::most_common() const {
-    const std::lock_guard lock(mutex_);
-    const auto use = std::ranges::max_element(uses_, {}, &Use::subscribers);
-    return use != uses_.end() ? use->variant : nullptr;
 }
 
 }  // namespace sweepcast::hub

@@ -17,11 +17,17 @@ namespace sweepcast::hub {
 /// Safe from any thread. Subscribers come and go under a lock; lidars look at a counter.
 class Variants {
 public:
-    /// Each costs every lidar the encoding of a sweep.
+    /// Distinct requests served at a time, besides the plain ones. Each costs every lidar the
+    /// encoding of a sweep.
     static constexpr std::size_t most = 64;
 
-    /// One more subscriber with this wish, in the place of one with `replaced` that is released
-    /// next, if there is one. Null if that would be too many different ones.
+    /// Returns whether the request is plain: every sample, as whole sweeps or as sectors of the
+    /// usual size, with or without flags and times (the page takes none), in any compression.
+    /// There are twelve. They are always served: distinct requests cannot take their places.
+    [[nodiscard]] static bool is_plain(const frame::Wish& wish);
+
+    /// Adds a subscriber with this wish, in the place of one with `replaced` that is released
+    /// next, if there is one. Returns null if that would be one distinct request too many.
     [[nodiscard]] VariantPtr acquire(const Wish& wish, const VariantPtr& replaced = nullptr);
     /// One subscriber less.
     void release(const VariantPtr& variant, std::optional<std::uint32_t> lidar);
@@ -31,8 +37,6 @@ public:
     /// What is wanted of a lidar.
     [[nodiscard]] std::vector<VariantPtr> wanted(std::uint32_t lidar) const;
 
-    /// The one with the most subscribers; null if there is none.
-    [[nodiscard]] VariantPtr most_common() const;
     [[nodiscard]] std::uint32_t subscribers() const { return subscribers_; }
 
 private:
@@ -42,6 +46,8 @@ private:
         std::map<std::optional<std::uint32_t>, std::uint32_t> by_lidar{};
         std::uint32_t subscribers{};
     };
+
+    [[nodiscard]] bool has_room(const VariantPtr& replaced) const;
 
     mutable std::mutex mutex_;
     std::vector<Use> uses_;

@@ -102,15 +102,12 @@ frame::WireMessagePtr closing_message(std::string_view reason) {
     return wire(message);
 }
 
-Refusal too_many_wishes(const hub::LocalHub& hub, std::uint32_t request) {
-    const auto common = hub.variants().most_common();
+Refusal too_many_wishes(std::uint32_t request) {
     return {
         "too_many_wishes",
-        fmt::format("subscribers already have {} different wishes", hub::Variants::most),
-        fmt::format(
-            "wish for what others get, for example {}",
-            common ? query_text(common->wish()) : "kind=sweep"
-        ),
+        fmt::format("subscribers already have {} distinct requests", hub::Variants::most),
+        "request kind=sweep and nothing else: that is always served; or try again when other "
+        "subscribers have left",
         request};
 }
 

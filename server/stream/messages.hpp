@@ -38,8 +38,8 @@ struct Order {
 [[nodiscard]] frame::WireMessagePtr refusal_message(const Refusal& refusal);
 [[nodiscard]] frame::WireMessagePtr closing_message(std::string_view reason);
 
-/// The refusal of a wish that would be one too many of different ones.
-[[nodiscard]] Refusal too_many_wishes(const hub::LocalHub& hub, std::uint32_t request);
+/// Returns the refusal of one distinct request too many.
+[[nodiscard]] Refusal too_many_wishes(std::uint32_t request);
 
 /// Reads a ClientMessage. `bytes` is hostile.
 [[nodiscard]] Result<Order, Refusal>

@@ -32,14 +32,9 @@ asio::awaitable<void> attend(Transport& transport) {
 }
 
 /// Delivers what is asked for from now on, or says why not.
-void obey(
-    const Order& order,
-    const hub::LocalHub& hub,
-    hub::LocalHub::Subscription& subscription,
-    hub::Outbox& outbox
-) {
+void obey(const Order& order, hub::LocalHub::Subscription& subscription, hub::Outbox& outbox) {
     if (!subscription.set_wish(order.wish, order.answer)) {
-        outbox.push_control(refusal_message(too_many_wishes(hub, order.request)));
+        outbox.push_control(refusal_message(too_many_wishes(order.request)));
     }
 }
 
@@ -67,7 +62,7 @@ asio::awaitable<std::string> listen(
         }
         const auto order = order_from_message(*bytes, hub);
         if (order) {
-            obey(*order, hub, subscription, outbox);
+            obey(*order, subscription, outbox);
         } else {
             outbox.push_control(refusal_message(order.error()));
         }
@@ -85,7 +80,7 @@ asio::awaitable<std::string> talk(
     outbox.push_control(hello_message(hub));
     hub::LocalHub::Subscription subscription(hub, outbox);
     if (settings.order) {
-        obey(*settings.order, hub, subscription, outbox);
+        obey(*settings.order, subscription, outbox);
     }
     const auto read_error = co_await listen(transport, hub, subscription, attendants);
     co_return outbox.end_reason().empty() ? read_error : outbox.end_reason();

@@ -21,7 +21,7 @@ namespace {
 
 using Checked = std::optional<Refusal>;  ///< none: fine
 
-constexpr double usual_sector_deg = 30;
+constexpr double usual_sector_deg = frame::usual_sector_mdeg / 1000.0;
 constexpr double longest_latency_ms = 60'000;
 constexpr double slowest_rate_hz = 0.001;
 constexpr double fastest_rate_hz = 1000;

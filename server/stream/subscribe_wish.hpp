@@ -1,4 +1,4 @@
-// What a Subscribe asks for, checked; and how it would be written in a URL.
+// What a Subscribe, or the query of a URL, asks for, checked.
 #pragma once
 
 #include "driver/protocol/result.hpp"
@@ -29,8 +29,5 @@ using Query = std::vector<std::pair<std::string, std::string>>;
 /// parameter is called as the field. An unknown one is refused: a misspelt wish should not be taken
 /// for none. So are those that cannot be read, and twice the same (but lists).
 [[nodiscard]] Result<v1::Subscribe, Refusal> subscribe_from_query(const Query& query);
-
-/// The query that asks for this.
-[[nodiscard]] std::string query_text(const frame::Wish& wish);
 
 }  // namespace sweepcast::stream

@@ -188,41 +188,4 @@ Result<v1::Subscribe, Refusal> subscribe_from_query(const Query& query) {
     return subscribe;
 }
 
-std::string query_text(const frame::Wish& wish) {
-    const frame::Wish usual;
-    std::string text = wish.kind == frame::Kind::sector ? "kind=sector" : "kind=sweep";
-    const auto add = [&text](bool is_wished, std::string_view name, auto value) {
-        if (is_wished) {
-            text += fmt::format("&{}={}", name, value);
-        }
-    };
-    const auto to_ms = [](std::chrono::microseconds time) {
-        return static_cast<double>(time.count()) / 1000;
-    };
-    const auto& format = wish.format;
-    add(format.compression == frame::Compression::none, "compression", "none");
-    add(wish.sector_mdeg > 0, "sector_deg", wish.sector_mdeg / 1000.0);
-    add(wish.max_latency.count() > 0, "max_latency_ms", to_ms(wish.max_latency));
-    add(wish.least_interval.count() > 0, "max_rate_hz", 1000 / to_ms(wish.least_interval));
-    for (const auto& window : wish.angles.windows()) {
-        add(!wish.angles.is_whole_circle(),
-            "keep",
-            fmt::format("{}-{}", window.from_deg, window.to_deg));
-    }
-    add(wish.nearest.raw > usual.nearest.raw, "min_distance_mm", wish.nearest.millimetres());
-    add(wish.farthest.raw < usual.farthest.raw, "max_distance_mm", wish.farthest.millimetres());
-    add(wish.min_quality > 0, "min_quality", wish.min_quality);
-    add(wish.every_nth > 1, "every_nth", wish.every_nth);
-    add(wish.bins.count > 0, "bins", wish.bins.count);
-    add(wish.bins.pick == frame::BinPick::minimum, "bins_pick", "minimum");
-    add(format.leave_out_quality, "leave_out", "quality");
-    add(format.leave_out_flags, "leave_out", "flag");
-    add(format.leave_out_times, "leave_out", "time");
-    add(format.distance_unit_um > 0, "distance_unit_um", format.distance_unit_um);
-    add(format.angle_units_per_turn > 0 && wish.bins.count == 0,
-        "angle_units_per_turn",
-        format.angle_units_per_turn);
-    return text;
-}
-
 }  // namespace sweepcast::stream

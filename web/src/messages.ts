@@ -28,7 +28,8 @@ export function decodeServerMessage(bytes: Uint8Array): ServerMessage {
 /// How much of a turn is drawn at a time, in degrees: at ten turns a second, 120 times a second.
 const SECTOR_DEG = 30;
 
-/// The message that asks for one lidar's sectors, without what is not drawn. fzstd needs no wasm, and
+/// The message that asks for one lidar's sectors, without what is not drawn. The gateway always serves
+/// exactly this request, however many others there are (Variants::is_plain). fzstd needs no wasm, and
 /// takes no dictionary.
 export function encodeSubscribe(lidar: string): Uint8Array {
   const subscribe = {

@@ -216,19 +216,19 @@ TEST_F(LocalHubTest, SectorsGoToWhoWantsThemAndNoLatestSweepDoes) {
 }
 
 TEST_F(LocalHubTest, AWishThatIsOneTooManyLeavesTheOneBefore) {
-    Client client(*this);
-    ASSERT_TRUE(client.subscription.set_wish(Wish{}));
-    Client same(*this);
-    ASSERT_TRUE(same.subscription.set_wish(Wish{}));
-    std::vector<std::unique_ptr<Client>> others;
     const auto nth = [](std::uint32_t n) {
         Wish wish;
         wish.frames.every_nth = n;
         return wish;
     };
+    Client client(*this);
+    ASSERT_TRUE(client.subscription.set_wish(nth(2)));
+    Client same(*this);
+    ASSERT_TRUE(same.subscription.set_wish(nth(2)));
+    std::vector<std::unique_ptr<Client>> others;
     for (std::uint32_t i = 1; i < Variants::most; ++i) {
         others.push_back(std::make_unique<Client>(*this));
-        ASSERT_TRUE(others.back()->subscription.set_wish(nth(1 + i)));
+        ASSERT_TRUE(others.back()->subscription.set_wish(nth(2 + i)));
     }
     EXPECT_FALSE(client.subscription.set_wish(nth(1000), message("answer")));
     EXPECT_TRUE(client.subscription.set_wish(nth(5)));

@@ -19,7 +19,6 @@ TEST(Variants, EqualWishesShareOne) {
     EXPECT_EQ(variants.acquire(nth(2, 7)), first);  // the lidar makes no other frame
     EXPECT_NE(variants.acquire(nth(3)), first);
     EXPECT_EQ(variants.subscribers(), 4U);
-    EXPECT_EQ(variants.most_common(), first);
 }
 
 TEST(Variants, ALidarMakesWhatIsWantedOfItOrOfAll) {
@@ -53,17 +52,70 @@ TEST(Variants, AreLimitedInNumberNotInSubscribers) {
     Variants variants;
     std::vector<VariantPtr> taken;
     for (std::uint32_t i = 0; i < Variants::most; ++i) {
-        taken.push_back(variants.acquire(nth(1 + i)));
+        taken.push_back(variants.acquire(nth(2 + i)));
         ASSERT_TRUE(taken.back());
     }
     EXPECT_FALSE(variants.acquire(nth(1000)));
-    EXPECT_EQ(variants.acquire(nth(5)), taken[4]);
+    EXPECT_EQ(variants.acquire(nth(6)), taken[4]);
     EXPECT_TRUE(variants.acquire(nth(1000), taken[7]));   // which is about to be released
     EXPECT_FALSE(variants.acquire(nth(1001), taken[4]));  // somebody else has it too
     variants.release(taken[7], std::nullopt);
     EXPECT_FALSE(variants.acquire(nth(1001)));
     variants.release(taken[8], std::nullopt);
     EXPECT_TRUE(variants.acquire(nth(1001)));
+}
+
+/// The plain requests, each with the compressions that there are, and what the page asks for.
+std::vector<Wish> plain_wishes() {
+    std::vector<Wish> wishes;
+    for (const auto kind : {frame::Kind::sweep, frame::Kind::sector}) {
+        for (const auto compression : {frame::Compression::zstd, frame::Compression::none}) {
+            Wish wish;
+            wish.frames.kind = kind;
+            wish.frames.format.compression = compression;
+            wish.frames.sector_mdeg = kind == frame::Kind::sector ? frame::usual_sector_mdeg : 0;
+            wishes.push_back(wish);
+        }
+        auto& packed = wishes.emplace_back(wishes[wishes.size() - 2]);
+        packed.frames.format.dictionary = true;
+    }
+    Wish page;
+    page.frames.kind = frame::Kind::sector;
+    page.frames.sector_mdeg = frame::usual_sector_mdeg;
+    page.frames.format.leave_out_flags = true;
+    page.frames.format.leave_out_times = true;
+    wishes.push_back(page);
+    return wishes;
+}
+
+TEST(Variants, PlainRequestsAreServedHoweverManyOthersThereAre) {
+    Variants variants;
+    for (std::uint32_t i = 0; i < Variants::most; ++i) {
+        ASSERT_TRUE(variants.acquire(nth(2 + i)));
+    }
+    for (const auto& plain : plain_wishes()) {
+        EXPECT_TRUE(variants.acquire(plain));
+    }
+    EXPECT_FALSE(variants.acquire(nth(1000)));
+}
+
+TEST(Variants, PlainRequestsTakeNoPlaceOfOthers) {
+    Variants variants;
+    for (const auto& plain : plain_wishes()) {
+        ASSERT_TRUE(variants.acquire(plain));
+    }
+    for (std::uint32_t i = 0; i < Variants::most; ++i) {
+        EXPECT_TRUE(variants.acquire(nth(2 + i)));
+    }
+}
+
+TEST(Variants, AChangeFromAPlainRequestMakesNoRoomForAnother) {
+    Variants variants;
+    const auto plain = variants.acquire(Wish{});
+    for (std::uint32_t i = 0; i < Variants::most; ++i) {
+        ASSERT_TRUE(variants.acquire(nth(2 + i)));
+    }
+    EXPECT_FALSE(variants.acquire(nth(1000), plain));
 }
 
 }  // namespace

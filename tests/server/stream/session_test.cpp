@@ -165,23 +165,43 @@ TEST_F(SessionTest, AnUnsubscribeEndsTheFrames) {
     EXPECT_FALSE(ended());
 }
 
-TEST_F(SessionTest, RefusesOneWishTooManyAndNamesOneThatIsInUse) {
+TEST_F(SessionTest, RefusesOneDistinctRequestTooManyAndItsHintIsServed) {
     std::vector<hub::VariantPtr> taken;
     for (std::uint32_t i = 0; i < hub::Variants::most; ++i) {
         hub::Wish wish;
-        wish.frames.every_nth = 2 + i;
+        wish.frames.every_nth = 3 + i;
+        wish.frames.format.dictionary = true;
         taken.push_back(variants.acquire(wish));
     }
     serve();
     v1::ClientMessage subscribe;
     subscribe.mutable_subscribe()->set_request(3);
+    subscribe.mutable_subscribe()->set_every_nth(2);
     say(subscribe);
-    const auto messages = received();
-    ASSERT_EQ(messages.size(), 2U);
-    EXPECT_EQ(messages[1].error().code(), "too_many_wishes");
-    EXPECT_EQ(messages[1].error().request(), 3U);
-    EXPECT_THAT(messages[1].error().hint(), testing::HasSubstr("kind=sweep&every_nth="));
+    const auto refused = received();
+    ASSERT_EQ(refused.size(), 2U);
+    EXPECT_EQ(refused[1].error().code(), "too_many_wishes");
+    EXPECT_EQ(refused[1].error().request(), 3U);
     EXPECT_FALSE(ended());
+
+    const std::string hint = refused[1].error().hint();
+    const auto begin = hint.find("kind=");
+    ASSERT_NE(begin, std::string::npos) << hint;
+    const auto advised = subscribe_from_query(
+        {{"kind",
+          hint.substr(
+              begin + 5,
+              hint.find_first_not_of("abcdefghijklmnopqrstuvwxyz", begin + 5) - begin - 5
+          )}}
+    );
+    ASSERT_TRUE(advised) << hint;
+    *subscribe.mutable_subscribe() = *advised;
+    say(subscribe);
+    publish(1);
+    const auto served_now = received();
+    ASSERT_EQ(served_now.size(), 2U);
+    EXPECT_TRUE(served_now[0].has_subscribed());
+    EXPECT_TRUE(served_now[1].has_frame());
 }
 
 TEST_F(SessionTest, DeliversAtOnceWhenTheWishCameWithTheConnection) {

@@ -93,22 +93,6 @@ TEST(SubscribeWish, WishesForTheSameAreEqual) {
     EXPECT_EQ(*wish_in("keep=0-10&keep=10-20"), *wish_in("keep=0-90&mask=20-90"));
 }
 
-TEST(SubscribeWish, AWishWrittenOutIsTheSameWish) {
-    for (const auto* text : {
-             "kind=sweep",
-             "kind=sweep&compression=none&max_rate_hz=2.5&keep=350-10&mask=1-1.25",
-             "min_distance_mm=100.25&max_distance_mm=8000&min_quality=20&every_nth=3",
-             "bins=720&bins_pick=minimum&leave_out=quality,flag,time&distance_unit_um=2000",
-             "kind=sector&sector_deg=7.125&max_latency_ms=10.125&angle_units_per_turn=3600",
-         }) {
-        const auto wish = wish_in(text);
-        ASSERT_TRUE(wish) << text;
-        const auto again = wish_in(query_text(*wish));
-        ASSERT_TRUE(again) << query_text(*wish) << ": " << again.error().message;
-        EXPECT_EQ(*again, *wish) << text;
-    }
-}
-
 struct Refused {
     std::string query, code;
 };
