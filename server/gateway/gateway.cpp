@@ -12,6 +12,7 @@
 #include <boost/asio/use_future.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <future>
 #include <optional>
@@ -189,7 +190,8 @@ Result<void, Problem> Gateway::add_lidars(const MakeLogger& make_logger) {
         }
         auto& worker = *workers_[lidars_.size() % workers_.size()];
         // A stand-in's name would go on in the log when a real lidar has taken its place.
-        const auto logged_as = where->is_stand_in ? std::to_string(number) : where->port_name;
+        const auto& name = where->name.empty() ? where->port_name : where->name;
+        const auto logged_as = where->is_stand_in ? std::to_string(number) : name;
         auto log = make_logger("lidar " + logged_as);
         lidars_.push_back(std::make_unique<ManagedLidar>(
             std::move(*where),
@@ -263,13 +265,17 @@ Result<LidarPlace, Problem>
 Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make_logger) {
     // Unique from the start, so that the name goes on meaning this lidar once it has its serial
     // number.
-    const auto& wished = url.name.empty() ? port_name(url) : url.name;
+    const auto port = port_name(url);
+    const auto& wished = url.name.empty() ? port : url.name;
     const auto name = ids_.claim(number, wished, wished);
+    // A named lidar can be addressed by its port too, unless another lidar's port is called the
+    // same.
+    const auto same_port = std::ranges::count(options_.lidars, port, port_name);
     LidarPlace place{
         .number = number,
         .url = url.text,
         .name = url.name,
-        .port_name = name,
+        .port_name = url.name.empty() || same_port > 1 ? name : port,
         .home = {},
         .is_virtual = false,
         .is_stand_in = url.is_stand_in,
@@ -277,11 +283,11 @@ Gateway::place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make
         .motor_off_after = url.motor_off_after};
     link::LinkUrl way;
     if (const auto* wanted = std::get_if<VirtualLidarUrl>(&url.where)) {
-        auto port = virtual_lidars_.add(*wanted, number, make_logger(place.port_name));
-        if (!port) {
-            return port.error();
+        auto path = virtual_lidars_.add(*wanted, number, make_logger(name));
+        if (!path) {
+            return path.error();
         }
-        way = {*port, link::SerialPlace{*port, std::nullopt}};
+        way = {*path, link::SerialPlace{*path, std::nullopt}};
         place.is_virtual = true;
     } else {
         way = std::get<link::LinkUrl>(url.where);

@@ -189,7 +189,7 @@ void ManagedLidar::remember(const device::DeviceState& state) {
 void ManagedLidar::claim_id(const std::optional<protocol::DeviceInfo>& info) {
     const auto serial = info ? protocol::serial_text(info->serial) : std::string();
     if (id_.empty()) {
-        id_ = place_.port_name;
+        id_ = place_.name.empty() ? place_.port_name : place_.name;
     }
     if (place_.name.empty() && !serial.empty() && serial != named_for_) {
         named_for_ = serial;

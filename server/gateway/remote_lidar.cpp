@@ -23,6 +23,7 @@ namespace {
 constexpr std::size_t most_hops = 4;
 constexpr std::string_view via = " via ";
 constexpr double sector_deg = 30;
+constexpr std::size_t short_serial_digits = 8;
 
 client::ClientOptions states_first() {
     client::ClientOptions options;
@@ -166,8 +167,11 @@ void RemoteLidar::take(const v1::StreamStats& stats) {
 
 bool RemoteLidar::is_meant(const v1::Lidar& lidar) const {
     const auto& id = place_.where.id;
-    // By its port's name too, as at its own gateway.
-    return id.empty() || lidar.id() == id || lidar.url().ends_with("/" + id);
+    // As at its own gateway: its id, its serial number or the digits that begin it, its port's
+    // name.
+    const std::string_view serial = lidar.device().serial_number();
+    return id.empty() || lidar.id() == id || lidar.url().ends_with("/" + id) ||
+           (!serial.empty() && (serial == id || serial.substr(0, short_serial_digits) == id));
 }
 
 /// Finds out which of the other gateway's lidars it is, and what to do then.

@@ -1,5 +1,7 @@
 #include "server/hub/local_hub.hpp"
 
+#include "driver/protocol/reply.hpp"
+
 #include <algorithm>
 #include <utility>
 
@@ -180,15 +182,31 @@ void LocalHub::close_all(const frame::WireMessagePtr& farewell, const std::strin
 }
 
 LidarSnapshotPtr LocalHub::find(std::string_view id) const {
-    const auto by_id =
-        std::ranges::find_if(lidars_, [&](const auto& lidar) { return lidar && lidar->id == id; });
-    if (by_id != lidars_.end()) {
-        return *by_id;
+    const auto first = [this](auto is_meant) {
+        const auto found = std::ranges::find_if(lidars_, [&](const auto& lidar) {
+            return lidar && is_meant(*lidar);
+        });
+        return found != lidars_.end() ? *found : nullptr;
+    };
+    if (auto by_id = first([&](const auto& lidar) { return lidar.id == id; })) {
+        return by_id;
     }
-    const auto by_port = std::ranges::find_if(lidars_, [&](const auto& lidar) {
-        return lidar && lidar->port_name == id;
+    const auto has_serial = [&](const LidarSnapshot& lidar) {
+        return lidar.state.info && protocol::serial_text(lidar.state.info->serial) == id;
+    };
+    if (auto by_serial = first(has_serial)) {
+        return by_serial;
+    }
+    const auto has_digits = [&](const LidarSnapshot& lidar) {
+        return lidar.state.info && protocol::short_serial_text(lidar.state.info->serial) == id;
+    };
+    const auto of_all = std::ranges::count_if(lidars_, [&](const auto& lidar) {
+        return lidar && has_digits(*lidar);
     });
-    return by_port != lidars_.end() ? *by_port : nullptr;
+    if (of_all == 1) {
+        return first(has_digits);
+    }
+    return first([&](const auto& lidar) { return lidar.port_name == id; });
 }
 
 std::shared_ptr<const device::CapturedSweep> LocalHub::latest_sweep(std::uint32_t number) const {

@@ -264,5 +264,46 @@ TEST_F(LocalHubTest, ClosingAllSaysFarewellToEveryClient) {
     EXPECT_EQ(client.end.outbox.end_reason(), "over");
 }
 
+StateNews identified(
+    std::uint32_t number,
+    const std::string& id,
+    const std::string& port_name,
+    std::uint8_t last_of_serial = 0
+) {
+    auto lidar = std::make_shared<LidarSnapshot>();
+    lidar->number = number;
+    lidar->id = id;
+    lidar->port_name = port_name;
+    lidar->state.info = protocol::DeviceInfo{.serial = {0xA0, 0xE1, 0xC2, 0xD3}};
+    lidar->state.info->serial.back() = last_of_serial;
+    return {lidar, message("state of " + id)};
+}
+
+TEST_F(LocalHubTest, ANamedLidarIsFoundByItsSerialNumberToo) {
+    hub.deliver(identified(1, "back", "ttyUSB0"));
+    for (const auto* id : {"back", "A0E1C2D3", "A0E1C2D3000000000000000000000000", "ttyUSB0"}) {
+        ASSERT_TRUE(hub.find(id)) << id;
+        EXPECT_EQ(hub.find(id)->number, 1U) << id;
+    }
+    for (const auto* id : {"", "A0E1C2D", "A0E1C2D30", "E1C2D300"}) {
+        EXPECT_FALSE(hub.find(id)) << id;
+    }
+}
+
+TEST_F(LocalHubTest, FirstDigitsThatTwoNamedLidarsShareMeanNeither) {
+    hub.deliver(identified(1, "back", "ttyUSB0", 1));
+    hub.deliver(identified(2, "front", "ttyUSB1", 2));
+    EXPECT_FALSE(hub.find("A0E1C2D3"));
+    EXPECT_EQ(hub.find("A0E1C2D3000000000000000000000002")->number, 2U);
+}
+
+TEST_F(LocalHubTest, AnIdGoesBeforeASerialNumberAndAPort) {
+    hub.deliver(identified(1, "back", "left"));
+    hub.deliver(identified(2, "left", "ttyUSB1", 2));
+    EXPECT_EQ(hub.find("left")->number, 2U);
+    hub.deliver(identified(2, "A0E1C2D3", "ttyUSB1", 2));
+    EXPECT_EQ(hub.find("A0E1C2D3")->number, 2U);
+}
+
 }  // namespace
 }  // namespace sweepcast::hub
