@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <vector>
@@ -44,7 +45,7 @@ void to_message(const device::CapturedSweep& captured, v1::LatestScan& scan) {
         scan.add_angle_deg(sample.angle.degrees());
         scan.add_distance_mm(sample.distance.millimetres());
         scan.add_quality(sample.quality);
-        scan.add_time_us(microseconds_after(first, sample.time));
+        scan.add_time_us(static_cast<std::int32_t>(microseconds_after(first, sample.time)));
     }
 }
 

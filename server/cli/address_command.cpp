@@ -152,11 +152,11 @@ void print_json(const std::string& port, const Outcome& outcome) {
     json::object object{
         {"port", port},
         {"model", outcome.model},
-        {"serialNumber", outcome.serial},
+        {"serial_number", outcome.serial},
         {"address", to_json(outcome.now)}};
     if (outcome.wanted) {
         object["before"] = to_json(outcome.before);
-        object["restartNeeded"] = outcome.now != outcome.before;
+        object["restart_needed"] = outcome.now != outcome.before;
     }
     fmt::print("{}\n", json::serialize(object));
 }

@@ -65,7 +65,7 @@ TEST_F(AddressTest, KeepsThePartsThatAreNotGiven) {
         HasSubstr(
             R"("address":{"ip":"192.168.11.7","mask":"255.255.255.0","gateway":"192.168.11.1"},)"
             R"("before":{"ip":"192.168.11.2","mask":"255.255.255.0","gateway":"192.168.11.1"},)"
-            R"("restartNeeded":true})"
+            R"("restart_needed":true})"
         )
     );
     const auto again = address({lidar.port, "--ip", "192.168.11.7"});

@@ -303,7 +303,7 @@ TEST(CommandLine, WatchGoesOnWhenTheGatewayComesBack) {
 TEST(CommandLine, WatchEndsWhenTold) {
     GatewayProcess gateway({"--lidar", "virtual:a1m8"});
     Process watch({program(), "watch", "tcp://" + gateway.tcp, "--json"});
-    watch.wait_for_output("\"angleDeg\"");
+    watch.wait_for_output("\"angle_deg\"");
     watch.signal(SIGINT);
     EXPECT_EQ(watch.wait(), 0);
 }

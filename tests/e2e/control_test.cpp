@@ -78,11 +78,19 @@ TEST_F(ControlTest, AnUnknownModeIsRefusedAndTheScanGoesOn) {
 TEST_F(ControlTest, TheLatestSweepIsThereAsJsonAndCsv) {
     const auto json = http(gateway.http, "GET", "/api/v1/lidars/" + id + "/scan");
     EXPECT_EQ(json.status, 200);
-    EXPECT_THAT(json.body, HasSubstr("\"angleDeg\""));
+    EXPECT_THAT(json.body, HasSubstr("\"angle_deg\""));
     const auto csv = http(gateway.http, "GET", "/api/v1/lidars/" + id + "/scan?format=csv");
     EXPECT_EQ(csv.status, 200);
     EXPECT_EQ(csv.header("content-type"), "text/csv; charset=utf-8");
     EXPECT_GT(std::ranges::count(csv.body, '\n'), 100);
+}
+
+TEST(Control, StartTakesTheIdOfAModeAsANumber) {
+    VirtualLidarProcess listing({"--model", "s2"});
+    GatewayProcess here({"--lidar", listing.port + "?name=s2"});
+    const auto answer = http(here.http, "POST", "/api/v1/lidars/s2/start", R"({"mode": 0})");
+    EXPECT_EQ(answer.status, 200);
+    EXPECT_THAT(answer.body, HasSubstr("\"mode\": \"Standard\""));
 }
 
 TEST(Control, AnIdleGatewayScansWhenToldTo) {
@@ -109,6 +117,40 @@ TEST(Control, ALidarThatIsNotThereSaysWhyAndAppearsWhenItComes) {
 
     VirtualLidarProcess lidar({"--link", port});
     client.next_sweep();
+}
+
+TEST(Control, CommandsToALidarThatIsNotThereAreKeptExceptAReset) {
+    ScratchDirectory scratch;
+    const auto port = scratch.file("lidar");
+    GatewayProcess gateway({"--lidar", port});
+    Subscriber client("tcp://" + gateway.tcp);
+    client.wait_for_state(v1::Lidar::ABSENT);
+    const std::string path = "/api/v1/lidars/lidar";
+    EXPECT_EQ(http(gateway.http, "PATCH", path, R"({"mode": "Standard"})").status, 202);
+    EXPECT_EQ(http(gateway.http, "POST", path + "/stop").status, 202);
+    EXPECT_EQ(http(gateway.http, "PATCH", path, R"({"mode": "Standard"})").status, 202);
+    EXPECT_EQ(http(gateway.http, "PATCH", path, R"({"speed_hz": 8})").status, 202);
+    const auto reset = http(gateway.http, "POST", path + "/reset");
+    EXPECT_EQ(reset.status, 503);
+    EXPECT_THAT(reset.body, HasSubstr("lidar_not_ready"));
+
+    VirtualLidarProcess lidar({"--model", "s2", "--link", port});
+    const auto idle = client.wait_for_state(v1::Lidar::IDLE);
+    EXPECT_EQ(idle.mode(), "Standard");
+    EXPECT_EQ(idle.rotation().wanted_hz(), 8);
+}
+
+TEST(Control, ANamedLidarGoesByItsSerialNumberAndItsPortToo) {
+    ScratchDirectory scratch;
+    VirtualLidarProcess lidar({"--link", scratch.file("plug")});
+    GatewayProcess gateway({"--lidar", scratch.file("plug") + "?name=back"});
+    Subscriber client("tcp://" + gateway.tcp);
+    const auto serial = client.wait_for_state(v1::Lidar::SCANNING).device().serial_number();
+    for (const auto& id : {std::string("back"), serial.substr(0, 8), serial, std::string("plug")}) {
+        const auto answer = http(gateway.http, "GET", "/api/v1/lidars/" + id);
+        EXPECT_EQ(answer.status, 200) << id;
+        EXPECT_THAT(answer.body, HasSubstr("\"id\": \"back\"")) << id;
+    }
 }
 
 TEST(Control, ALidarThatVanishesIsReportedAndTakenAgain) {
@@ -174,12 +216,12 @@ TEST(Control, APatchThatIsRefusedInOnePartChangesNothing) {
     client.subscribe();
     client.wait_for_state(v1::Lidar::SCANNING);
     const std::string lidar = "/api/v1/lidars/left";
-    const auto before = http(gateway.http, "PATCH", lidar, R"({"speedHz": 12})");
-    EXPECT_THAT(before.body, HasSubstr("\"wantedHz\": 12,"));
-    const auto refused = http(gateway.http, "PATCH", lidar, R"({"speedHz": 8, "mode": "Turbo"})");
+    const auto before = http(gateway.http, "PATCH", lidar, R"({"speed_hz": 12})");
+    EXPECT_THAT(before.body, HasSubstr("\"wanted_hz\": 12,"));
+    const auto refused = http(gateway.http, "PATCH", lidar, R"({"speed_hz": 8, "mode": "Turbo"})");
     EXPECT_EQ(refused.status, 400);
     EXPECT_THAT(refused.body, HasSubstr("unknown_mode"));
-    EXPECT_THAT(http(gateway.http, "GET", lidar).body, HasSubstr("\"wantedHz\": 12,"));
+    EXPECT_THAT(http(gateway.http, "GET", lidar).body, HasSubstr("\"wanted_hz\": 12,"));
 }
 
 TEST(Control, ANameThatItsUserGaveALidarIsNotTakenByThePortOfAnother) {

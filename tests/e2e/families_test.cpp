@@ -208,7 +208,7 @@ TEST_P(SpeedTest, SevenTurnsASecondAreReachedAndSaidSo) {
     Subscriber client("tcp://" + gateway.tcp);
     client.subscribe();
     const auto id = client.wait_for_state(v1::Lidar::SCANNING).id();
-    const auto answer = http(gateway.http, "PATCH", "/api/v1/lidars/" + id, R"({"speedHz": 7})");
+    const auto answer = http(gateway.http, "PATCH", "/api/v1/lidars/" + id, R"({"speed_hz": 7})");
     EXPECT_EQ(answer.status, 200) << answer.body;
     const auto settled = client.next([](const v1::ServerMessage& message) {
         return message.has_lidar() && message.lidar().rotation().wanted_hz() == 7.0 &&
@@ -244,7 +244,7 @@ TEST(Families, AC1RefusesAnotherSpeedAndSaysWhy) {
     const auto lidar = client.wait_for_state(v1::Lidar::SCANNING);
     EXPECT_EQ(lidar.rotation().control(), v1::Rotation::FIXED);
     const auto answer =
-        http(gateway.http, "PATCH", "/api/v1/lidars/" + lidar.id(), R"({"speedHz": 7})");
+        http(gateway.http, "PATCH", "/api/v1/lidars/" + lidar.id(), R"({"speed_hz": 7})");
     EXPECT_EQ(answer.status, 409);
     EXPECT_THAT(answer.body, HasSubstr("fixed_speed"));
     client.next_sweep();

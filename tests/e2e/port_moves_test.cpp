@@ -256,8 +256,8 @@ TEST_F(PortMoves, ALidarThatIsPluggedInTakesThePlaceOfTheVirtualOne) {
     EXPECT_EQ(after.lidar, "A0A0A0A0");
     const auto told = http(gateway.http, "GET", "/api/v1/lidars/A0A0A0A0").body;
     EXPECT_THAT(told, HasSubstr(scratch.file("new")));
-    EXPECT_THAT(told, testing::ContainsRegex("\"isVirtual\": ?false"));
-    EXPECT_THAT(told, testing::ContainsRegex("\"isStandIn\": ?false"));
+    EXPECT_THAT(told, testing::ContainsRegex("\"is_virtual\": ?false"));
+    EXPECT_THAT(told, testing::ContainsRegex("\"is_stand_in\": ?false"));
     gateway.process.signal(SIGTERM);
     EXPECT_EQ(gateway.process.wait(), 0);
     const auto log = gateway.process.rest_of_log();

@@ -85,7 +85,7 @@ TEST(RemoteLidar, IsPublishedWithAllThatItsOwnGatewayTells) {
     }
     EXPECT_GE(compared, 2U);
     EXPECT_EQ(field(lidar_of(here), "id"), field(lidar_of(there), "id"));
-    EXPECT_EQ(field(lidar_of(here), "serialNumber"), field(lidar_of(there), "serialNumber"));
+    EXPECT_EQ(field(lidar_of(here), "serial_number"), field(lidar_of(there), "serial_number"));
 }
 
 TEST(RemoteLidar, IsPublishedInSectorsToo) {

@@ -75,8 +75,8 @@ test("a diagnosis is read from the gateway's JSON", () => {
     verdict: "FAILED",
     checks: [{ id: "port", title: "The port exists", verdict: "FAILED", finding: "no such file" }],
     cause: "there is no /dev/ttyUSB0",
-    likelyCauses: ["the lidar is not plugged in"],
-    nextSteps: ["plug it in"],
+    likely_causes: ["the lidar is not plugged in"],
+    next_steps: ["plug it in"],
     ofALaterVersion: 1,
   };
   const answer = diagnosisOf(JSON.stringify(body));

@@ -609,8 +609,8 @@ if (binary) {
       { id: "d", title: "Fourth", verdict: "NOT_RUN" },
     ],
     cause: "there is no port",
-    likelyCauses: ["it is not plugged in", "the cable is broken"],
-    nextSteps: ["plug it in"],
+    likely_causes: ["it is not plugged in", "the cable is broken"],
+    next_steps: ["plug it in"],
   };
 
   test("a diagnosis shows that it runs, then cause, steps and each check's verdict", async () => {

@@ -259,7 +259,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"DELETE", "/api/v1/lidars", "", 405, "method_not_allowed"},
         Refused{"POST", "/api/v1/lidars/A0E1C2D3/start", "mode=Express", 400, "bad_body"},
         Refused{"POST", "/api/v1/lidars/A0E1C2D3/start", R"({"mood": "Express"})", 400, "bad_body"},
-        Refused{"POST", "/api/v1/lidars/A0E1C2D3/start", R"({"mode": 7})", 400, "bad_body"},
+        Refused{"POST", "/api/v1/lidars/A0E1C2D3/start", R"({"mode": 0.5})", 400, "bad_body"},
         Refused{"GET", "/api/v1/lidars/nobody/diagnosis", "", 404, "lidar_not_found"},
         Refused{"POST", "/api/v1/lidars/A0E1C2D3/diagnosis", "", 405, "method_not_allowed"},
         Refused{"GET", "/api/v1/lidars/A0E1C2D3/scan", "", 404, "no_scan_yet"},
