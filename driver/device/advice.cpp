@@ -68,11 +68,11 @@ bool is_absence(const error_code& code) {
     return code == link::errc::port_not_found;
 }
 
-Problem not_ready(Phase phase) {
+Problem still_pending(Phase phase) {
     return {
-        make_error_code(errc::not_ready),
+        make_error_code(errc::pending),
         "the lidar is still " + std::string(name(phase)),
-        "the command stays in force; its state tells when it has taken effect"};
+        "the command is kept; the lidar's state shows when it has taken effect"};
 }
 
 std::optional<Problem> speed_problem(double hz, const MotorTraits& motor, bool is_known) {

@@ -30,8 +30,8 @@ namespace sweepcast::device {
 /// for.
 [[nodiscard]] bool is_absence(const error_code& code);
 
-/// A command has not taken effect in time: the lidar is still in this phase.
-[[nodiscard]] Problem not_ready(Phase phase);
+/// Returns that a command is kept but has not taken effect in time: the lidar is still in `phase`.
+[[nodiscard]] Problem still_pending(Phase phase);
 
 /// What is wrong with the wish to turn at `hz` turns a second (0: the usual speed), if anything.
 /// What the motor cannot do counts once the lidar `is_known`.

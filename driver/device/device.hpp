@@ -107,15 +107,17 @@ public:
     void shut_down();
 
     /// Scans, in the mode of that name or id (empty: as before). Returns once samples come in.
-    /// Errors: errc::unknown_mode, not_ready, superseded, shutting_down, or why the device failed.
+    /// Errors: errc::unknown_mode, pending (the lidar is away or slow; the command is kept),
+    /// not_ready (the lidar has failed), superseded, shutting_down.
     boost::asio::awaitable<Result<void, Problem>> start(std::string mode);
 
     /// Ends the scan. Returns once the motor has been switched off, at once if there is no lidar.
-    /// Errors: errc::not_ready, superseded, shutting_down.
+    /// Errors: errc::pending, superseded, shutting_down.
     boost::asio::awaitable<Result<void, Problem>> stop();
 
     /// Reboots the lidar (RESET, protocol.md 11.2); a scan that was wanted is started again.
-    /// Returns once the lidar has answered and, where wanted, scans. Errors: as start().
+    /// Returns once the lidar has answered and, where wanted, scans. Errors: as start(); not_ready
+    /// also if there is no lidar, for a reset is not kept for one that comes later.
     boost::asio::awaitable<Result<void, Problem>> reset();
 
     /// Has it scan in another mode from now on, or from the next start on. Returns once it does.

@@ -18,9 +18,14 @@ constexpr auto stop_limit = 3s;
 /// Booting takes up to 15 s.
 constexpr auto reset_limit = 15s + start_limit;
 
-/// Whether no command can have an effect there, until something changes by itself.
+/// Returns whether there is no connection to the lidar now; the device goes on looking for it.
+bool is_away(Phase phase) {
+    return phase == Phase::absent || phase == Phase::backing_off;
+}
+
+/// Returns whether no command can have an effect there, until something changes by itself.
 bool is_out_of_reach(Phase phase) {
-    return phase == Phase::absent || phase == Phase::backing_off || phase == Phase::failed;
+    return is_away(phase) || phase == Phase::failed;
 }
 
 }  // namespace
@@ -122,7 +127,13 @@ asio::awaitable<Result<void, Problem>> Device::reset() {
     if (!std::exchange(wanted_.reset, true)) {
         ++wanted_.command;
     }
-    co_return co_await settle([this] { return !wanted_.reset && settled(); }, reset_limit);
+    auto done = co_await settle([this] { return !wanted_.reset && settled(); }, reset_limit);
+    if (!done && done.error().code == errc::pending && is_away(state_.phase)) {
+        // An attempt to reach the lidar begins from scratch: nothing of a reset is kept for it.
+        wanted_.reset = false;
+        co_return Problem{make_error_code(errc::not_ready), done.error().cause, done.error().hint};
+    }
+    co_return done;
 }
 
 asio::awaitable<Result<std::optional<Diagnosis>, Problem>> Device::diagnose(Examine examine) {
@@ -194,11 +205,12 @@ Device::settle(std::function<bool()> reached, std::chrono::milliseconds limit) {
             state_.phase == Phase::protection_stop && !wanted_.to_scan() && !wanted_.reset;
         const bool failed = is_out_of_reach(state_.phase) || stopped_for_good;
         if (failed && (state_.changes != version || state_.phase == Phase::absent)) {
-            co_return Problem{make_error_code(errc::not_ready), state_.cause, state_.hint};
+            const auto code = is_away(state_.phase) ? errc::pending : errc::not_ready;
+            co_return Problem{make_error_code(code), state_.cause, state_.hint};
         }
         const bool changed = co_await changed_.wait_until(deadline);
         if (!changed && !reached()) {
-            co_return not_ready(state_.phase);
+            co_return still_pending(state_.phase);
         }
     }
     co_return Result<void, Problem>{};

@@ -22,7 +22,9 @@ public:
         case errc::unknown_mode:
             return "no such scan mode";
         case errc::not_ready:
-            return "the lidar did not get there in time";
+            return "the lidar cannot do that now";
+        case errc::pending:
+            return "the lidar has not done that yet";
         case errc::no_such_speed:
             return "the lidar is not made for that speed";
         case errc::fixed_speed:

@@ -11,7 +11,8 @@ enum class errc {
     not_turning,      ///< samples come, but no revolutions
     protection_stop,  ///< the lidar reports a fault and has switched itself off
     unknown_mode,     ///< no scan mode of that name
-    not_ready,        ///< the command did not take effect in time
+    not_ready,        ///< the lidar cannot do it, and the command is not kept
+    pending,          ///< the command is kept, and takes effect as soon as the lidar can obey
     no_such_speed,    ///< a rotation speed beyond what the lidar is made for
     fixed_speed,      ///< the rotation speed of this lidar cannot be changed
     baud_refused,     ///< the lidar would not be talked into another line speed

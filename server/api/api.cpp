@@ -119,14 +119,17 @@ std::optional<Response> refuse_parameters(const Request& request, std::string_vi
     return std::nullopt;
 }
 
-Response lidar_response(const hub::LidarSnapshot& lidar) {
+Response lidar_response(const hub::LidarSnapshot& lidar, int status = 200) {
     v1::Lidar message;
     stream::to_message(lidar, message);
-    return {200, "application/json", to_json(message), {}};
+    return {status, "application/json", to_json(message), {}};
 }
 
 Response outcome_response(const LidarControl::Outcome& outcome) {
-    return outcome ? lidar_response(**outcome) : error_response(outcome.error());
+    if (!outcome) {
+        return error_response(outcome.error());
+    }
+    return lidar_response(*outcome->lidar, outcome->pending ? 202 : 200);
 }
 
 bool wants_csv(const Request& request) {

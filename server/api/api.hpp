@@ -20,11 +20,19 @@ struct LidarUpdate {
     std::optional<double> speed_hz;   ///< turns a second; 0: its usual speed
 };
 
+/// The lidar after a command.
+struct Obeyed {
+    hub::LidarSnapshotPtr lidar;
+    /// True if the lidar cannot obey now, and will as soon as it can: its state says what it waits
+    /// for.
+    bool pending{};
+};
+
 /// What the API can have done to a lidar, by its number. May be called on any worker.
 class LidarControl {
 public:
     virtual ~LidarControl() = default;
-    using Outcome = Result<hub::LidarSnapshotPtr, Problem>;
+    using Outcome = Result<Obeyed, Problem>;
     virtual boost::asio::awaitable<Outcome> start(std::uint32_t lidar, std::string mode) = 0;
     virtual boost::asio::awaitable<Outcome> stop(std::uint32_t lidar) = 0;
     virtual boost::asio::awaitable<Outcome> reset(std::uint32_t lidar) = 0;

@@ -1,5 +1,6 @@
 #include "server/gateway/gateway.hpp"
 
+#include "driver/device/error.hpp"
 #include "server/gateway/managed_lidar.hpp"
 #include "server/gateway/remote_lidar.hpp"
 #include "server/http/http_session.hpp"
@@ -60,16 +61,17 @@ std::string describe_peer(const tcp::socket& socket) {
     return gone ? "tcp client" : "tcp " + net::to_text(peer);
 }
 
-/// Has a lidar obey on its own worker; what it answers is the state it is in then.
+/// Has a lidar obey on its own worker. The outcome is the state that the lidar is in then.
 asio::awaitable<api::LidarControl::Outcome>
 command(GatewayLidar& lidar, asio::awaitable<Result<void, Problem>> order) {
     auto obey = [](GatewayLidar& obeying, asio::awaitable<Result<void, Problem>> what
                 ) -> asio::awaitable<api::LidarControl::Outcome> {
         const auto done = co_await std::move(what);
-        if (!done) {
+        const bool pending = !done && done.error().code == device::errc::pending;
+        if (!done && !pending) {
             co_return done.error();
         }
-        co_return obeying.snapshot();
+        co_return api::Obeyed{obeying.snapshot(), pending};
     };
     co_return co_await async::run_on(lidar.worker().executor(), obey(lidar, std::move(order)));
 }

@@ -33,7 +33,8 @@ public:
     [[nodiscard]] virtual async::Worker& worker() = 0;
     [[nodiscard]] virtual hub::LidarSnapshotPtr snapshot() const = 0;
 
-    /// The commands of the API.
+    /// The commands of the API. Besides their errors: device::errc::pending if the lidar cannot
+    /// obey now, and will as soon as it can.
     virtual Done start_scan(std::string mode) = 0;
     virtual Done stop_scan() = 0;
     virtual Done reset() = 0;

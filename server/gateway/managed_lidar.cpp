@@ -66,15 +66,15 @@ void ManagedLidar::shut_down() {
 }
 
 GatewayLidar::Done ManagedLidar::start_scan(std::string mode) {
-    co_return co_await device_.start(std::move(mode));
+    co_return obeyed(co_await device_.start(std::move(mode)));
 }
 
 GatewayLidar::Done ManagedLidar::stop_scan() {
-    co_return co_await device_.stop();
+    co_return obeyed(co_await device_.stop());
 }
 
 GatewayLidar::Done ManagedLidar::reset() {
-    co_return co_await device_.reset();
+    co_return obeyed(co_await device_.reset());
 }
 
 GatewayLidar::Done ManagedLidar::update(api::LidarUpdate update) {
@@ -88,9 +88,18 @@ GatewayLidar::Done ManagedLidar::update(api::LidarUpdate update) {
         }
     }
     if (update.mode) {
-        co_return co_await device_.set_mode(*update.mode);
+        co_return obeyed(co_await device_.set_mode(*update.mode));
     }
-    co_return Result<void, Problem>{};
+    co_return obeyed({});
+}
+
+/// Returns how a command ended: it is pending if the device has taken it while there is no lidar
+/// that could obey.
+Result<void, Problem> ManagedLidar::obeyed(Result<void, Problem> done) const {
+    if (done && !device_.in_hand()) {
+        return device::still_pending(device_.state().phase);
+    }
+    return done;
 }
 
 asio::awaitable<Result<device::Diagnosis, Problem>> ManagedLidar::diagnose() {

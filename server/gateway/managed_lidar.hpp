@@ -63,6 +63,7 @@ public:
     boost::asio::awaitable<Result<device::Diagnosis, Problem>> diagnose() override;
 
 private:
+    [[nodiscard]] Result<void, Problem> obeyed(Result<void, Problem> done) const;
     void on_state(const device::DeviceState& state) override;
     void follow_port(const std::optional<protocol::DeviceInfo>& info);
     void remember(const device::DeviceState& state);

@@ -111,9 +111,10 @@ TEST(Control, ALidarThatIsNotThereSaysWhyAndAppearsWhenItComes) {
     const auto absent = client.wait_for_state(v1::Lidar::ABSENT);
     EXPECT_THAT(absent.cause(), HasSubstr(port));
     EXPECT_NE(absent.hint(), "");
-    const auto refused = http(gateway.http, "POST", "/api/v1/lidars/lidar/start");
-    EXPECT_EQ(refused.status, 503);
-    EXPECT_THAT(refused.body, HasSubstr(port));
+    const auto accepted = http(gateway.http, "POST", "/api/v1/lidars/lidar/start");
+    EXPECT_EQ(accepted.status, 202);
+    EXPECT_THAT(accepted.body, HasSubstr("\"ABSENT\""));
+    EXPECT_THAT(accepted.body, HasSubstr(port));
 
     VirtualLidarProcess lidar({"--link", port});
     client.next_sweep();

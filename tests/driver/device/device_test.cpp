@@ -366,6 +366,32 @@ TEST_F(DeviceTest, StartTellsWhyAFailedLidarCannotBeStarted) {
     }(*this));
 }
 
+TEST_F(DeviceTest, AStartOfALidarThatIsAwayIsKept) {
+    open_problem = Problem{make_error_code(errc::no_answer), "no such port", "plug it in"};
+    make_device({.scan_at_once = false, .recovery = at_once});
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::backing_off);
+        const auto started = co_await test.device->start("");
+        EXPECT_EQ(started.error().code, errc::pending);
+        test.open_problem.reset();
+        co_await test.until_phase(Phase::scanning);
+    }(*this));
+}
+
+TEST_F(DeviceTest, AResetOfALidarThatIsAwayIsNotKept) {
+    open_problem = Problem{make_error_code(errc::no_answer), "no such port", "plug it in"};
+    make_device();
+    play([](DeviceTest& test) -> asio::awaitable<void> {
+        co_await test.until_phase(Phase::backing_off);
+        const auto reset = co_await test.device->reset();
+        EXPECT_EQ(reset.error().code, errc::not_ready);
+        EXPECT_EQ(reset.error().cause, "no such port");
+        test.open_problem.reset();
+        co_await test.until_phase(Phase::scanning);
+        EXPECT_EQ(test.scanner.count(Command::reset), 0U);
+    }(*this));
+}
+
 TEST_F(DeviceTest, ComesBackAfterTheCableWasPulled) {
     make_device();
     play([](DeviceTest& test) -> asio::awaitable<void> {
@@ -412,6 +438,7 @@ TEST_F(DeviceTest, ResetSaysSoWhenTheFaultStays) {
         co_await test.until_phase(Phase::failed);
         const auto reset = co_await test.device->reset();
         EXPECT_FALSE(reset);
+        EXPECT_EQ(reset.error().code, errc::not_ready);
         EXPECT_THAT(reset.error().cause, HasSubstr("protection stop"));
     }(*this));
 }

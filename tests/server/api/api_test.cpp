@@ -67,11 +67,12 @@ public:
         if (problem) {
             return *problem;
         }
-        return snapshot;
+        return Obeyed{snapshot, pending};
     }
 
     std::vector<std::string> orders;
     hub::LidarSnapshotPtr snapshot;
+    bool pending{};
     std::optional<Problem> problem;
 };
 
@@ -217,6 +218,22 @@ TEST_F(ApiTest, HasLidarsObey) {
     EXPECT_EQ(ask("POST", "/api/v1/lidars/A0E1C2D3/stop").status, 200);
     EXPECT_EQ(ask("POST", "/api/v1/lidars/A0E1C2D3/reset").status, 200);
     EXPECT_THAT(control.orders, ElementsAre("start 1 ", "start 1 Express", "stop 1", "reset 1"));
+}
+
+TEST_F(ApiTest, ACommandThatTheLidarWillObeyLaterIsAccepted) {
+    control.pending = true;
+    for (const auto* const action : {"start", "stop", "reset"}) {
+        const auto response = ask("POST", std::string("/api/v1/lidars/A0E1C2D3/") + action);
+        EXPECT_EQ(response.status, 202) << action;
+        EXPECT_EQ(response.body, ask("GET", "/api/v1/lidars/A0E1C2D3").body);
+    }
+    EXPECT_EQ(ask("PATCH", "/api/v1/lidars/A0E1C2D3", R"({"speed_hz": 7})").status, 202);
+}
+
+TEST_F(ApiTest, TakesTheIdOfAModeAsANumber) {
+    EXPECT_EQ(ask("PATCH", "/api/v1/lidars/A0E1C2D3", R"({"mode": 0})").status, 200);
+    EXPECT_EQ(ask("POST", "/api/v1/lidars/A0E1C2D3/start", R"({"mode": 3})").status, 200);
+    EXPECT_THAT(control.orders, ElementsAre("update 1 mode 0 speed -", "start 1 3"));
 }
 
 struct Refused {
