@@ -31,6 +31,7 @@ namespace {
 struct ServeArguments {
     std::string http{"127.0.0.1:8080"};
     std::string tcp{"127.0.0.1:8081"};
+    std::vector<std::string> host_names;
     std::vector<std::string> lidars;
     std::vector<std::string> discover;
     std::string mode;
@@ -52,6 +53,7 @@ Result<gateway::GatewayOptions, Problem> to_options(const ServeArguments& argume
         return tcp.error();
     }
     options.tcp = *tcp;
+    options.host_names = arguments.host_names;
     options.threads = arguments.threads;
     options.device.scan_at_once = !arguments.idle;
     options.device.mode = arguments.mode;
@@ -171,6 +173,12 @@ void add_serve_command(CLI::App& app, int& exit_code) {
         ->capture_default_str();
     command.add_option("--tcp", arguments->tcp, "Where the TCP stream is (ADDRESS:PORT)")
         ->capture_default_str();
+    command.add_option(
+        "--host-name",
+        arguments->host_names,
+        "Answer HTTP requests to this host name too (robot.example.com). IP addresses, localhost "
+        "and the host name of this machine always work. Repeatable"
+    );
     command.add_option(
         "--mode",
         arguments->mode,

@@ -76,6 +76,25 @@ command(GatewayLidar& lidar, asio::awaitable<Result<void, Problem>> order) {
     co_return co_await async::run_on(lidar.worker().executor(), obey(lidar, std::move(order)));
 }
 
+std::vector<std::string> all_host_names(const std::vector<std::string>& given) {
+    auto names = http::own_host_names();
+    names.insert(names.end(), given.begin(), given.end());
+    return names;
+}
+
+/// Returns what is wrong with the first of the names that is none, if there is one.
+std::optional<Problem> bad_host_name(const std::vector<std::string>& names) {
+    const auto bad =
+        std::ranges::find_if_not(names, [](const auto& name) { return http::is_host_name(name); });
+    if (bad == names.end()) {
+        return std::nullopt;
+    }
+    return Problem{
+        make_error_code(boost::system::errc::invalid_argument),
+        fmt::format("\"{}\" is no host name", *bad),
+        "give --host-name a name without scheme and port, such as robot.example.com"};
+}
+
 asio::awaitable<void> serve_tcp(
     tcp::socket socket,
     hub::LocalHub& hub,
@@ -91,6 +110,9 @@ asio::awaitable<void> serve_tcp(
 
 Result<std::unique_ptr<Gateway>, Problem>
 Gateway::start(GatewayOptions options, const MakeLogger& make_logger) {
+    if (auto problem = bad_host_name(options.host_names)) {
+        return std::move(*problem);
+    }
     std::unique_ptr<Gateway> gateway(new Gateway(std::move(options), make_logger));
     if (auto listening = gateway->listen(make_logger); !listening) {
         return listening.error();
@@ -109,6 +131,7 @@ Gateway::start(GatewayOptions options, const MakeLogger& make_logger) {
 Gateway::Gateway(GatewayOptions options, const MakeLogger& make_logger)
     : options_(std::move(options))
     , log_(make_logger("gateway"))
+    , hosts_(all_host_names(options_.host_names))
     , virtual_lidars_(log_failure(log_))
     , ports_(options_.patterns, log_failure(log_), log_) {
     std::vector<hub::Hub::Executor> executors;
@@ -141,7 +164,7 @@ Result<void, Problem> Gateway::listen(const MakeLogger& make_logger) {
         [this, log = make_logger("http")](tcp::socket socket, std::size_t worker) {
             return http::serve_http(
                 std::move(socket),
-                {apis_[worker], hub_->local(worker), options_.mailbox, log}
+                {apis_[worker], hub_->local(worker), hosts_, options_.mailbox, log}
             );
         },
         make_logger("http")

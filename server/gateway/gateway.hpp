@@ -10,6 +10,7 @@
 #include "server/gateway/lidar_url.hpp"
 #include "server/gateway/managed_lidar.hpp"
 #include "server/gateway/virtual_lidars.hpp"
+#include "server/http/host_names.hpp"
 #include "server/hub/hub.hpp"
 #include "server/net/listener.hpp"
 
@@ -34,6 +35,8 @@ struct GatewayOptions {
     device::DeviceOptions device;
     /// What is known of line speeds, and what is learnt of them.
     std::shared_ptr<LidarMemory> memory{std::make_shared<LidarMemory>()};
+    /// Names under which clients address the gateway, besides those of its machine.
+    std::vector<std::string> host_names;
     /// Threads for lidars and clients.
     std::size_t threads{1};
     /// Most connections at a time, for HTTP and TCP each.
@@ -88,6 +91,7 @@ private:
     std::shared_ptr<spdlog::logger> log_;
     net::Workers workers_;
     std::unique_ptr<hub::Hub> hub_;
+    http::HostNames hosts_;
     LidarIds ids_;
     VirtualLidars virtual_lidars_;
     LidarPorts ports_;

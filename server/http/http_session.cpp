@@ -112,6 +112,36 @@ api::Response wrong_origin() {
     );
 }
 
+/// Returns the refusal of a request to a host that is not this gateway, if it is one.
+std::optional<api::Response> wrong_host(const BeastRequest& request, const HostNames& hosts) {
+    const auto given = request.count(bhttp::field::host);
+    if (given == 0 && request.version() < 11) {
+        return std::nullopt;  // HTTP/1.0 has no such header, and browsers do not speak it
+    }
+    const auto host = view(request[bhttp::field::host]);
+    const auto check = given == 1 ? hosts.check(host) : HostCheck::malformed;
+    if (check == HostCheck::malformed) {
+        return api::error_response(
+            400,
+            "bad_host",
+            given == 0   ? "the request has no Host header"
+            : given == 1 ? fmt::format("the Host header \"{}\" is no host name or address", host)
+                         : "the request has several Host headers",
+            "send one Host header, such as \"Host: 127.0.0.1:8080\""
+        );
+    }
+    if (check == HostCheck::other) {
+        return api::error_response(
+            421,
+            "unknown_host",
+            fmt::format("this gateway does not know itself as \"{}\"", host),
+            "use the IP address of the gateway's machine or its host name; if it has other names, "
+            "start the gateway with --host-name NAME"
+        );
+    }
+    return std::nullopt;
+}
+
 bool from_own_page(const BeastRequest& request) {
     return api::same_origin(view(request[bhttp::field::origin]), view(request[bhttp::field::host]));
 }
@@ -224,6 +254,9 @@ private:
     }
 
     asio::awaitable<api::Response> route(const BeastRequest& from) {
+        if (auto refusal = wrong_host(from, context_.hosts)) {
+            co_return std::move(*refusal);
+        }
         api::Request request;
         request.method = from.method_string();
         request.accept = from[bhttp::field::accept];
@@ -271,6 +304,9 @@ private:
     }
 
     Result<stream::SessionSettings, api::Response> session_settings(const BeastRequest& from) {
+        if (auto refusal = wrong_host(from, context_.hosts)) {
+            return std::move(*refusal);
+        }
         api::Request request;
         if (!api::set_target(request, view(from.target())) || request.path != stream_path) {
             return api::error_response(

@@ -55,6 +55,9 @@ INSTANTIATE_TEST_SUITE_P(
     MistakeTest,
     testing::Values(
         Mistake{{"serve", "--http", "nowhere"}, "127.0.0.1:8080"},
+        Mistake{
+            {"serve", "--lidar", "virtual:a1m8", "--host-name", "http://robot"},
+            "robot.example.com"},
         Mistake{{"serve", "--lidar", "usb://1"}, "virtual:a1m8"},
         Mistake{{"serve", "--lidar", "virtual:z9"}, "z9"},
         Mistake{{"serve", "--lidar", "virtual:a1m8?world=/nonexistent.csv"}, "/nonexistent.csv"},

@@ -66,7 +66,7 @@ HttpAnswer HttpConnection::ask(
     request.method_string(method);
     request.target(target);
     request.version(11);
-    request.set(bhttp::field::host, "test");
+    request.set(bhttp::field::host, "localhost");
     for (const auto& [name, value] : headers) {
         request.set(name, value);
     }

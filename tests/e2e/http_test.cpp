@@ -111,23 +111,23 @@ TEST_P(WrongRequestTest, GetsTheErrorShape) {
     EXPECT_EQ(answer.header("cache-control"), "no-store");
 }
 
-const std::string post = "POST /api/v1/lidars/virtual-a1m8/start HTTP/1.1\r\nHost: test\r\n";
+const std::string post = "POST /api/v1/lidars/virtual-a1m8/start HTTP/1.1\r\nHost: localhost\r\n";
 
 INSTANTIATE_TEST_SUITE_P(
     Requests,
     WrongRequestTest,
     testing::Values(
         Wrong{"garbage", "this is not HTTP\r\n\r\n", 400, "bad_request"},
-        Wrong{"path", "GET /nothing HTTP/1.1\r\nHost: test\r\n\r\n", 404, "not_found"},
+        Wrong{"path", "GET /nothing HTTP/1.1\r\nHost: localhost\r\n\r\n", 404, "not_found"},
         Wrong{
             "verb",
-            "DELETE /api/v1/lidars HTTP/1.1\r\nHost: test\r\n\r\n",
+            "DELETE /api/v1/lidars HTTP/1.1\r\nHost: localhost\r\n\r\n",
             405,
             "method_not_allowed"},
-        Wrong{"target", "GET /%zz HTTP/1.1\r\nHost: test\r\n\r\n", 400, "bad_target"},
+        Wrong{"target", "GET /%zz HTTP/1.1\r\nHost: localhost\r\n\r\n", 400, "bad_target"},
         Wrong{
             "header",
-            "GET / HTTP/1.1\r\nHost: test\r\nX: " + std::string(20'000, 'x') + "\r\n\r\n",
+            "GET / HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(20'000, 'x') + "\r\n\r\n",
             431,
             "header_too_large"},
         Wrong{"body", post + "Content-Length: 100000\r\n\r\n", 413, "body_too_large"},
@@ -139,26 +139,32 @@ INSTANTIATE_TEST_SUITE_P(
             "body_too_large"},
         Wrong{
             "whole_header",
-            "GET / HTTP/1.1\r\nHost: test\r\nX: " + std::string(200'000, 'x') + "\r\n\r\n",
+            "GET / HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(200'000, 'x') + "\r\n\r\n",
             431,
             "header_too_large"},
         Wrong{"json", post + "Content-Length: 5\r\n\r\nhello", 400, "bad_body"},
         Wrong{"origin", post + "Origin: http://evil.example\r\n\r\n", 403, "wrong_origin"},
         Wrong{
             "stream",
-            "GET /api/v1/stream HTTP/1.1\r\nHost: test\r\n\r\n",
+            "GET /api/v1/stream HTTP/1.1\r\nHost: localhost\r\n\r\n",
             426,
             "upgrade_required"},
         Wrong{
+            "rebound_name",
+            "GET / HTTP/1.1\r\nHost: evil.example:8080\r\n\r\n",
+            421,
+            "unknown_host"},
+        Wrong{"no_host", "GET / HTTP/1.1\r\n\r\n", 400, "bad_host"},
+        Wrong{
             "query",
-            "GET /api/v1/stream?lidar=nobody HTTP/1.1\r\nHost: test\r\nConnection: "
+            "GET /api/v1/stream?lidar=nobody HTTP/1.1\r\nHost: localhost\r\nConnection: "
             "Upgrade\r\nUpgrade: websocket\r\n"
             "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n",
             404,
             "lidar_not_found"},
         Wrong{
             "foreign_page",
-            "GET /api/v1/stream HTTP/1.1\r\nHost: test\r\nOrigin: "
+            "GET /api/v1/stream HTTP/1.1\r\nHost: localhost\r\nOrigin: "
             "http://evil.example\r\nConnection: Upgrade\r\n"
             "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: "
             "dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n",
@@ -167,6 +173,17 @@ INSTANTIATE_TEST_SUITE_P(
     ),
     [](const auto& wrong) { return wrong.param.what; }
 );
+
+TEST(HttpHost, NamesGivenOnTheCommandLineAreAnswered) {
+    GatewayProcess gateway(
+        {"--lidar", "virtual:a1m8", "--idle", "--host-name", "robot.example", "--host-name", "r2"}
+    );
+    HttpConnection connection(gateway.http);
+    for (const auto* name : {"robot.example:8080", "R2", "localhost"}) {
+        EXPECT_EQ(connection.ask("GET", "/healthz", "", {{"Host", name}}).status, 200) << name;
+    }
+    EXPECT_EQ(connection.ask("GET", "/healthz", "", {{"Host", "example"}}).status, 421);
+}
 
 }  // namespace
 }  // namespace sweepcast::test

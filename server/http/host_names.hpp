@@ -1,0 +1,43 @@
+// HostNames: the names under which clients may address the gateway.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sweepcast::http {
+
+/// What the Host header of a request says.
+enum class HostCheck : std::uint8_t {
+    ours,       ///< an address, or a name of this gateway
+    other,      ///< a name that this gateway does not have
+    malformed,  ///< neither a name nor an address, or the port is no number
+};
+
+/// Decides by the Host header whether a request was meant for this gateway. Any web site can have
+/// its own name resolved to the gateway's address (DNS rebinding); a browser then takes the
+/// gateway for that site and lets the site's page control the lidars. Such requests carry the
+/// site's name. Addresses cannot be had that way, and "localhost" never leaves the machine.
+class HostNames {
+public:
+    /// Takes the names that are allowed besides addresses, localhost and *.localhost.
+    explicit HostNames(std::vector<std::string> names);
+
+    /// Checks a Host header such as "robot:8080" or "[::1]:8080". Upper case and a dot at the end
+    /// of a name make no difference, nor does the port.
+    [[nodiscard]] HostCheck check(std::string_view header) const;
+
+private:
+    std::vector<std::string> names_;  ///< in lower case, without a dot at the end
+};
+
+/// Returns whether `text` can be a host name: parts of letters, digits, '-' and '_' with dots
+/// between them, 253 characters at most.
+[[nodiscard]] bool is_host_name(std::string_view text);
+
+/// Returns the names of this machine: its host name, the first part of that, and NAME.local, which
+/// multicast DNS gives it.
+[[nodiscard]] std::vector<std::string> own_host_names();
+
+}  // namespace sweepcast::http
