@@ -22,6 +22,7 @@
 #include <exception>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace sweepcast::http {
@@ -150,6 +151,7 @@ bool from_own_page(const BeastRequest& request) {
 struct Upgrade {
     asio::ip::tcp::socket socket;
     BeastRequest request;
+    std::string unread;  ///< what the client sent after the request
     stream::SessionSettings settings;
 };
 
@@ -187,9 +189,11 @@ public:
                 auto settings = settings_or_error(request);
                 if (settings) {
                     auto socket = stream_.release_socket();
-                    co_return std::make_unique<Upgrade>(
-                        Upgrade{std::move(socket), std::move(request), std::move(*settings)}
-                    );
+                    co_return std::make_unique<Upgrade>(Upgrade{
+                        std::move(socket),
+                        std::move(request),
+                        beast::buffers_to_string(buffer_.cdata()),
+                        std::move(*settings)});
                 }
                 auto refusal = to_beast(settings.error(), request.version(), false, false);
                 co_await write(std::move(refusal));
@@ -359,8 +363,11 @@ asio::awaitable<void> serve_http(asio::ip::tcp::socket socket, HttpContext conte
     if (!upgrade) {
         co_return;
     }
-    auto transport =
-        co_await stream::accept_websocket(std::move(upgrade->socket), std::move(upgrade->request));
+    auto transport = co_await stream::accept_websocket(
+        std::move(upgrade->socket),
+        std::move(upgrade->request),
+        std::move(upgrade->unread)
+    );
     auto settings = std::move(upgrade->settings);
     upgrade.reset();
     if (transport) {

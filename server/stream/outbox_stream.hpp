@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <utility>
 
 namespace sweepcast::stream {
@@ -26,13 +27,20 @@ class OutboxStream {
 public:
     using executor_type = boost::asio::ip::tcp::socket::executor_type;
 
-    explicit OutboxStream(hub::Outbox& outbox) : outbox_(&outbox) {}
+    /// `unread` is what has already been read from the outbox's socket: it comes first.
+    explicit OutboxStream(hub::Outbox& outbox, std::string unread = {})
+        : outbox_(&outbox)
+        , unread_(std::move(unread)) {}
 
     [[nodiscard]] executor_type get_executor() { return outbox_->socket().get_executor(); }
 
     template <class Buffers, class Token>
     auto async_read_some(const Buffers& buffers, Token&& token) {
-        return outbox_->socket().async_read_some(buffers, std::forward<Token>(token));
+        return boost::asio::async_initiate<Token, void(boost::system::error_code, std::size_t)>(
+            Read{this},
+            token,
+            buffers
+        );
     }
 
     /// Completes when the bytes have left the outbox: while Beast waits for that it does not read,
@@ -87,6 +95,29 @@ private:
         return hub::Outbox::Last{!bytes.empty() && bytes[0] == final_close};
     }
 
+    struct Read {
+        OutboxStream* stream;
+
+        template <class Handler, class Buffers>
+        void operator()(Handler&& handler, const Buffers& buffers) const {
+            auto& unread = stream->unread_;
+            if (unread.empty()) {
+                stream->outbox_->socket().async_read_some(buffers, std::forward<Handler>(handler));
+                return;
+            }
+            const auto size = boost::asio::buffer_copy(buffers, boost::asio::buffer(unread));
+            std::string(unread, size).swap(unread);  // which keeps no capacity
+            boost::asio::post(
+                stream->get_executor(),
+                boost::beast::bind_front_handler(
+                    std::forward<Handler>(handler),
+                    boost::system::error_code{},
+                    size
+                )
+            );
+        }
+    };
+
     struct Write {
         hub::Outbox* outbox;
 
@@ -103,6 +134,7 @@ private:
     };
 
     hub::Outbox* outbox_;
+    std::string unread_;
 };
 
 }  // namespace sweepcast::stream

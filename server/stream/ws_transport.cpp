@@ -29,9 +29,9 @@ using WsStream = websocket::stream<OutboxStream, false>;
 
 class WsTransport final : public Transport {
 public:
-    explicit WsTransport(asio::ip::tcp::socket socket)
+    WsTransport(asio::ip::tcp::socket socket, std::string unread)
         : outbox_(std::move(socket), frame::Framing::websocket)
-        , ws_(outbox_) {
+        , ws_(outbox_, std::move(unread)) {
         set_stream_options(outbox_.socket());
         // A client that neither reads nor answers a ping is cut off. Frames do not go through Beast
         // and so do not put the pings off: one may reach a client that has just stopped reading,
@@ -91,9 +91,10 @@ private:
 
 asio::awaitable<Result<std::unique_ptr<Transport>>> accept_websocket(
     asio::ip::tcp::socket socket,
-    beast::http::request<beast::http::string_body> request
+    beast::http::request<beast::http::string_body> request,
+    std::string unread
 ) {
-    auto transport = std::make_unique<WsTransport>(std::move(socket));
+    auto transport = std::make_unique<WsTransport>(std::move(socket), std::move(unread));
     if (auto accepted = co_await transport->accept(request); !accepted) {
         co_return accepted.error();
     }

@@ -10,14 +10,17 @@
 #include <boost/beast/http/string_body.hpp>
 
 #include <memory>
+#include <string>
 
 namespace sweepcast::stream {
 
-/// Answers a client's upgrade request on `socket`.
+/// Answers a client's upgrade request on `socket`. `unread` is what the client has already sent
+/// after the request: the first bytes of the stream.
 /// Errors: those of the handshake.
 [[nodiscard]] boost::asio::awaitable<Result<std::unique_ptr<Transport>>> accept_websocket(
     boost::asio::ip::tcp::socket socket,
-    boost::beast::http::request<boost::beast::http::string_body> request
+    boost::beast::http::request<boost::beast::http::string_body> request,
+    std::string unread
 );
 
 }  // namespace sweepcast::stream

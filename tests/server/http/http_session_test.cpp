@@ -164,6 +164,31 @@ const std::string upgrade =
     "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
 const std::string stream_request = "GET /api/v1/stream HTTP/1.1\r\nHost: localhost\r\n" + upgrade;
 
+/// A Subscribe as a WebSocket message of a client, whose mask is 0.
+std::string subscribe_bytes(std::uint32_t request) {
+    v1::ClientMessage message;
+    message.mutable_subscribe()->set_request(request);
+    const auto body = message.SerializeAsString();
+    return std::string("\x82") + static_cast<char>(0x80U | body.size()) + std::string(4, '\0') +
+           body;
+}
+
+TEST_F(HttpSessionTest, ReadsWhatAClientSendsTogetherWithItsUpgrade) {
+    EXPECT_EQ(ask(stream_request + subscribe_bytes(5)).status, 101);
+    EXPECT_TRUE(read_message().has_hello());
+    EXPECT_EQ(read_message().subscribed().wish().request(), 5U);
+}
+
+TEST_F(HttpSessionTest, ReadsAMessageThatBeginsTogetherWithTheUpgrade) {
+    const auto message = subscribe_bytes(6);
+    EXPECT_EQ(ask(stream_request + subscribe_bytes(5) + message.substr(0, 3)).status, 101);
+    EXPECT_TRUE(read_message().has_hello());
+    EXPECT_EQ(read_message().subscribed().wish().request(), 5U);
+    send(message.substr(3) + subscribe_bytes(7));
+    EXPECT_EQ(read_message().subscribed().wish().request(), 6U);
+    EXPECT_EQ(read_message().subscribed().wish().request(), 7U);
+}
+
 struct Host {
     std::string what, header;
     int status;
