@@ -1,5 +1,6 @@
 #include "server/http/http_session.hpp"
 
+#include "driver/async/task_group.hpp"
 #include "server/api/errors.hpp"
 #include "server/api/request.hpp"
 #include "server/http/page.hpp"
@@ -249,9 +250,10 @@ private:
         api::Response response;
         try {
             response = co_await route(request);
-        } catch (const boost::system::system_error&) {
-            throw;  // cancelled: the gateway is ending
         } catch (const std::exception& failure) {
+            if (async::is_cancellation(std::current_exception())) {
+                throw;  // the gateway is ending
+            }
             response = internal_error(request, failure);
         }
         co_return to_beast(std::move(response), request.version(), request.keep_alive(), head);

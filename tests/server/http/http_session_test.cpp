@@ -189,6 +189,23 @@ TEST_F(HttpSessionTest, ReadsAMessageThatBeginsTogetherWithTheUpgrade) {
     EXPECT_EQ(read_message().subscribed().wish().request(), 7U);
 }
 
+TEST_F(HttpSessionTest, AnErrorOfTheSystemInAHandlerIsAnsweredAndLogged) {
+    const auto out_of_memory = boost::system::errc::make_error_code(boost::system::errc::io_error);
+    control.failure = std::make_exception_ptr(boost::system::system_error(out_of_memory));
+    const auto answer = ask(start + "Host: localhost\r\n\r\n");
+    EXPECT_EQ(answer.status, 500);
+    EXPECT_THAT(answer.body, HasSubstr("\"internal_error\""));
+    EXPECT_THAT(logged.str(), HasSubstr("/api/v1/lidars/A0E1C2D3/start"));
+    EXPECT_EQ(ask(healthz).status, 200) << "the connection goes on";
+}
+
+TEST_F(HttpSessionTest, AnyOtherExceptionInAHandlerIsAnsweredToo) {
+    control.failure = std::make_exception_ptr(std::runtime_error("broken"));
+    EXPECT_EQ(ask(start + "Host: localhost\r\n\r\n").status, 500);
+    EXPECT_THAT(logged.str(), HasSubstr("broken"));
+    EXPECT_EQ(ask(healthz).status, 200);
+}
+
 struct Host {
     std::string what, header;
     int status;
