@@ -2,6 +2,7 @@
 #include "server/stream/subscribe_wish.hpp"
 
 #include "server/frame/dictionary.hpp"
+#include "server/hub/variants.hpp"
 #include "sweepcast/v1/stream.pb.h"
 
 #include <gtest/gtest.h>
@@ -91,6 +92,30 @@ TEST(SubscribeWish, WishesForTheSameAreEqual) {
     EXPECT_EQ(wish_in("")->angles, wish_in("keep=0-360")->angles);
     EXPECT_EQ(*wish_in(""), *wish_in("every_nth=1&max_rate_hz=0&min_quality=0&dictionaries=5"));
     EXPECT_EQ(*wish_in("keep=0-10&keep=10-20"), *wish_in("keep=0-90&mask=20-90"));
+}
+
+TEST(SubscribeWish, WhatThePageAndPlainClientsAskForIsPlain) {
+    const auto ours = std::to_string(frame::dictionary_id());
+    for (const auto& text : {
+             std::string("kind=sector&compression=zstd&sector_deg=30&leave_out=flag,time"
+             ),  // the page
+             std::string(),
+             std::string("kind=sweep"),
+             std::string("kind=sector"),
+             std::string("compression=none"),
+             "dictionaries=" + ours,
+             "kind=sector&sector_deg=30&dictionaries=" + ours,
+         }) {
+        EXPECT_TRUE(hub::Variants::is_plain(*wish_in(text))) << text;
+    }
+    for (const std::string text :
+         {"bins=360",
+          "every_nth=2",
+          "kind=sector&sector_deg=29",
+          "leave_out=quality",
+          "max_rate_hz=2"}) {
+        EXPECT_FALSE(hub::Variants::is_plain(*wish_in(text))) << text;
+    }
 }
 
 struct Refused {
