@@ -78,20 +78,26 @@ protected:
     }
     ~HttpSessionTest() override {
         client.close();
-        wait_for(served);
+        EXPECT_TRUE(comes(served));
     }
 
+    /// Runs until the future is ready; false if nothing happens any more.
     template <class T>
-    void wait_for(std::future<T>& future) {
+    bool comes(const std::future<T>& future) {
         context.restart();
         while (future.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
-            ASSERT_GT(context.run_one_for(std::chrono::seconds(10)), 0U) << "nothing came";
+            if (context.run_one_for(std::chrono::seconds(10)) == 0) {
+                return false;
+            }
         }
+        return true;
     }
     template <class T>
     T run(asio::awaitable<T> task) {
         auto done = asio::co_spawn(context, std::move(task), asio::use_future);
-        wait_for(done);
+        if (!comes(done)) {
+            throw std::runtime_error("nothing came");
+        }
         return done.get();
     }
 
@@ -190,8 +196,8 @@ TEST_F(HttpSessionTest, ReadsAMessageThatBeginsTogetherWithTheUpgrade) {
 }
 
 TEST_F(HttpSessionTest, AnErrorOfTheSystemInAHandlerIsAnsweredAndLogged) {
-    const auto out_of_memory = boost::system::errc::make_error_code(boost::system::errc::io_error);
-    control.failure = std::make_exception_ptr(boost::system::system_error(out_of_memory));
+    const auto io_error = boost::system::errc::make_error_code(boost::system::errc::io_error);
+    control.failure = std::make_exception_ptr(boost::system::system_error(io_error));
     const auto answer = ask(start + "Host: localhost\r\n\r\n");
     EXPECT_EQ(answer.status, 500);
     EXPECT_THAT(answer.body, HasSubstr("\"internal_error\""));

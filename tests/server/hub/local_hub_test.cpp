@@ -294,6 +294,7 @@ TEST_F(LocalHubTest, FirstDigitsThatTwoNamedLidarsShareMeanNeither) {
     hub.deliver(identified(1, "back", "ttyUSB0", 1));
     hub.deliver(identified(2, "front", "ttyUSB1", 2));
     EXPECT_FALSE(hub.find("A0E1C2D3"));
+    ASSERT_TRUE(hub.find("A0E1C2D3000000000000000000000002"));
     EXPECT_EQ(hub.find("A0E1C2D3000000000000000000000002")->number, 2U);
 }
 
