@@ -217,6 +217,10 @@ struct Host {
     int status;
 };
 
+void PrintTo(const Host& host, std::ostream* out) {
+    *out << host.what;
+}
+
 class HostTest : public HttpSessionTest, public testing::WithParamInterface<Host> {};
 
 TEST_P(HostTest, DecidesWhoMayCommand) {
