@@ -65,7 +65,7 @@ TEST(ToJson, ACountThatADoubleCannotHoldStaysText) {
 TEST(ToJson, TextThatLooksLikeACountStaysText) {
     v1::Lidar message;
     message.set_id("12345678");
-    message.set_cause("\\\"bytes\\\": \"5\", {\\");
+    message.set_cause(R"(\"bytes\": "5", {\)");
     message.set_hint("7");
     message.mutable_line()->set_bytes(5);
     const auto lidar = json::parse(to_json(message));

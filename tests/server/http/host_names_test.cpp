@@ -56,27 +56,10 @@ TEST(HostNames, OtherNamesAreNot) {
 
 TEST(HostNames, WhatIsNoHostIsMalformed) {
     for (const std::string header :
-         {"",
-          ":8080",
-          ".",
-          "..",
-          "a..b",
-          ".robot",
-          "robot..",
-          "robot:80x",
-          "robot:80:80",
-          "robot/",
-          "user@robot",
-          "a b",
-          "::1",
-          "[::1",
-          "[::1]8080",
-          "[]",
-          "[robot]",
-          "[127.0.0.1]",
-          "http://robot",
-          "r\xc3\xb6"
-          "bot"}) {
+         {"",           ":8080",   ".",           "..",           "a..b",
+          ".robot",     "robot..", "robot:80x",   "robot:80:80",  "robot/",
+          "user@robot", "a b",     "::1",         "[::1",         "[::1]8080",
+          "[]",         "[robot]", "[127.0.0.1]", "http://robot", "rob\xc3\xb6t"}) {
         EXPECT_EQ(hosts.check(header), HostCheck::malformed) << header;
     }
     EXPECT_EQ(hosts.check(std::string(254, 'a')), HostCheck::malformed);

@@ -12,7 +12,6 @@
 #include <boost/asio/error.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/use_future.hpp>
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <deque>
@@ -24,7 +23,6 @@ namespace sweepcast::stream {
 namespace {
 
 namespace asio = boost::asio;
-using testing::HasSubstr;
 using Clock = std::chrono::steady_clock;
 
 /// Sends to a client within the process.
