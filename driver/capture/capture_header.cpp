@@ -1,6 +1,8 @@
 // The header's JSON. Numbers are checked before they are narrowed: a capture may come from anybody.
 #include "driver/capture/capture_header.hpp"
 
+#include "driver/protocol/printable.hpp"
+
 #include <boost/json/object.hpp>
 #include <boost/json/parse.hpp>
 #include <boost/json/serialize.hpp>
@@ -9,6 +11,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string_view>
 
 namespace sweepcast::capture {
 
@@ -26,16 +29,13 @@ Problem bad_header(std::string_view what) {
         "capture anew; the bytes alone can be decoded with --type"};
 }
 
-/// What comes from a file may end up in a terminal.
-std::string printable(std::string_view text) {
-    std::string kept(text.substr(0, longest_text));
-    std::erase_if(kept, [](char c) { return c < ' ' || c > '~'; });
-    return kept;
-}
-
 std::string text_of(const json::object& object, std::string_view key) {
     const auto* value = object.if_contains(key);
-    return value != nullptr && value->is_string() ? printable(value->get_string()) : std::string();
+    if (value == nullptr || !value->is_string()) {
+        return {};
+    }
+    const std::string_view text = value->get_string();
+    return protocol::printable(text.substr(0, longest_text));
 }
 
 /// A whole number from 0 to `most`; nullopt if there is none or another.

@@ -1,7 +1,7 @@
 // Telling paths from URLs, and taking URLs apart with Boost.URL.
 #include "driver/link/link_url.hpp"
 
-#include "driver/link/small_file.hpp"
+#include "driver/protocol/printable.hpp"
 
 #include <boost/url/parse.hpp>
 #include <boost/url/parse_query.hpp>
@@ -94,7 +94,7 @@ Result<LinkUrl, Problem> serial_url(
         if (!place.baud) {
             return bad_url(
                 text,
-                fmt::format("\"{}\" is no line speed", printable(parameter.value)),
+                fmt::format("\"{}\" is no line speed", protocol::printable(parameter.value)),
                 fmt::format(
                     "write bits per second, from {} to {}; RPLIDARs use 115200, 256000, 460800 and "
                     "1000000",
@@ -195,7 +195,7 @@ Result<LinkUrl, Problem> parse_link_url(std::string_view text) {
     if (url && !others.empty()) {
         return bad_url(
             text,
-            fmt::format("unknown parameter \"{}\"", printable(others.front().key))
+            fmt::format("unknown parameter \"{}\"", protocol::printable(others.front().key))
         );
     }
     return url;

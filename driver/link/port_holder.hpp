@@ -10,7 +10,7 @@ namespace sweepcast::link {
 
 struct PortHolder {
     pid_t pid{};
-    std::string command;  ///< its short name, printable ASCII only
+    std::string command;  ///< its short name, made printable
     bool operator==(const PortHolder&) const = default;
 };
 

@@ -28,7 +28,7 @@ struct SystemRoots {
 };
 
 /// All serial ports behind USB adapters that have a device file, sorted by path. What cannot be
-/// read is left out. Texts that adapters give are stripped of everything but printable ASCII.
+/// read is left out. Texts that adapters give are made printable.
 std::vector<SerialPort> list_usb_ports(const SystemRoots& roots = {});
 
 /// Those behind an adapter that RPLIDARs are sold with (CP210x, CH34x): where a lidar may be looked

@@ -1,5 +1,6 @@
 #include "driver/virtual/fault_command.hpp"
 
+#include "driver/protocol/printable.hpp"
 #include "driver/virtual/error.hpp"
 #include "driver/virtual/faults.hpp"
 #include "driver/virtual/trimmed.hpp"
@@ -70,15 +71,10 @@ constexpr std::array incidents{
         "the next bytes (10) that it sends are lost"},
 };
 
-// Text that came from anywhere, fit for a line of a log: short, and printable.
+// Returns the beginning of a command from anywhere, for a problem that quotes it.
 std::string shown(std::string_view text) {
     constexpr std::size_t most = 64;
-    std::string out(text.substr(0, most));
-    std::ranges::replace_if(
-        out,
-        [](char c) { return c < ' ' || c > '~'; },
-        '?'
-    );
+    const auto out = protocol::printable(text.substr(0, most));
     return text.size() > most ? out + "..." : out;
 }
 

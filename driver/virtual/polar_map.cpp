@@ -1,5 +1,6 @@
 #include "driver/virtual/polar_map.hpp"
 
+#include "driver/protocol/printable.hpp"
 #include "driver/virtual/error.hpp"
 #include "driver/virtual/trimmed.hpp"
 
@@ -25,14 +26,11 @@ std::optional<double> parse_number(std::string_view text) {
     return value;
 }
 
-// Input is quoted in problems: short, and without control characters that would upset a terminal.
+// Returns the beginning of an input, for a problem that quotes it.
 std::string quoted(std::string_view text) {
     constexpr std::size_t longest = 40;
-    std::string out = "\"";
-    for (const char c : text.substr(0, longest)) {
-        out += c >= ' ' && c <= '~' ? c : '?';
-    }
-    return out + (text.size() > longest ? "...\"" : "\"");
+    const auto* const end = text.size() > longest ? "...\"" : "\"";
+    return "\"" + protocol::printable(text.substr(0, longest)) + end;
 }
 
 // A line's point, or what is wrong with the line.

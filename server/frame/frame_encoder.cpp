@@ -1,8 +1,8 @@
 // Columns -> protobuf -> zstd.
 #include "server/frame/frame_encoder.hpp"
 
+#include "driver/protocol/printable.hpp"
 #include "server/frame/dictionary.hpp"
-#include "server/frame/printable.hpp"
 #include "server/frame/scan_columns.hpp"
 #include "sweepcast/v1/scan.pb.h"
 #include "sweepcast/v1/stream.pb.h"
@@ -87,7 +87,7 @@ WireMessagePtr FrameEncoder::encode(const FrameContent& content, const FrameForm
     to_columns(content, format, work.scan);
     auto& frame = *work.message.mutable_frame();
     frame.Clear();
-    frame.set_lidar(printable(content.lidar));
+    frame.set_lidar(protocol::printable(content.lidar));
     frame.set_sequence(content.sequence);
     frame.set_kind(content.kind == Kind::sector ? v1::SECTOR : v1::SWEEP);
     frame.set_sector(content.sector);

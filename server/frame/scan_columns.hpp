@@ -22,7 +22,7 @@ constexpr std::size_t max_samples = 65536;
 /// Unless `format` wants less, every sample comes back exactly. Of the rest: the time of a sample
 /// farther than farthest_us from the earliest becomes the farthest, a period that no uint32 of
 /// microseconds holds the nearest that does, a wall-clock time outside 1970..2262 becomes 0, and a
-/// mode's name keeps printable ASCII only. Throws std::length_error for more than max_samples,
+/// mode's name is made printable. Throws std::length_error for more than max_samples,
 /// which no sweep assembler gives out.
 void to_columns(const FrameContent& content, const FrameFormat& format, v1::Scan& scan);
 

@@ -1,8 +1,8 @@
 // Samples -> columns, one function a column.
+#include "driver/protocol/printable.hpp"
 #include "server/frame/angle_ramps.hpp"
 #include "server/frame/angle_units.hpp"
 #include "server/frame/distance_units.hpp"
-#include "server/frame/printable.hpp"
 #include "server/frame/scan_columns.hpp"
 #include "server/frame/time_runs.hpp"
 #include "server/frame/zigzag.hpp"
@@ -218,7 +218,7 @@ void to_columns(const FrameContent& content, const FrameFormat& format, v1::Scan
     }
     write_times(content, format.leave_out_times, scan);
     scan.set_period_us(to_uint32(content.period.count()));
-    scan.set_mode(printable(content.mode));
+    scan.set_mode(protocol::printable(content.mode));
     scan.set_answer_type(static_cast<std::uint32_t>(content.answer_type));
     scan.set_checksum_errors(content.losses.checksum_errors);
     scan.set_skipped_bytes(content.losses.skipped_bytes);

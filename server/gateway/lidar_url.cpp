@@ -1,6 +1,6 @@
 #include "server/gateway/lidar_url.hpp"
 
-#include "driver/link/small_file.hpp"
+#include "driver/protocol/printable.hpp"
 
 #include <boost/url/parse.hpp>
 #include <boost/url/url_view.hpp>
@@ -144,7 +144,10 @@ Result<void, Problem> apply(LidarUrl& url, const link::UrlParameter& parameter) 
         if (!is_lidar_name(parameter.value)) {
             return bad_url(
                 url.text,
-                fmt::format("\"{}\" cannot be a lidar's name", link::printable(parameter.value)),
+                fmt::format(
+                    "\"{}\" cannot be a lidar's name",
+                    protocol::printable(parameter.value)
+                ),
                 fmt::format("a name has 1 to {} of A-Z a-z 0-9 . _ -, not only dots", longest_name)
             );
         }
@@ -167,7 +170,7 @@ Result<void, Problem> apply(LidarUrl& url, const link::UrlParameter& parameter) 
         if (!url.hz) {
             return bad_url(
                 url.text,
-                fmt::format("\"{}\" is no rotation speed", link::printable(parameter.value)),
+                fmt::format("\"{}\" is no rotation speed", protocol::printable(parameter.value)),
                 fmt::format("write rotations per second, {} to {}", slowest_hz, fastest_hz)
             );
         }
@@ -178,7 +181,7 @@ Result<void, Problem> apply(LidarUrl& url, const link::UrlParameter& parameter) 
         if (!url.motor_off_after) {
             return bad_url(
                 url.text,
-                fmt::format("\"{}\" is no time to wait", link::printable(parameter.value)),
+                fmt::format("\"{}\" is no time to wait", protocol::printable(parameter.value)),
                 fmt::format("write seconds, 1 to {}", longest_patience.count())
             );
         }
@@ -186,7 +189,7 @@ Result<void, Problem> apply(LidarUrl& url, const link::UrlParameter& parameter) 
     }
     return bad_url(
         url.text,
-        fmt::format("unknown parameter \"{}\"", link::printable(parameter.key)),
+        fmt::format("unknown parameter \"{}\"", protocol::printable(parameter.key)),
         "there are: name=ID, mode=NAME, hz=SPEED, motor_off_after=SECONDS; for a serial "
         "port also baud=RATE, as in /dev/ttyUSB0?baud=256000; for a virtual lidar world=FILE, "
         "fault=FAULT, schedule=TEXT and control=PATH, as in virtual:a1m8?world=FILE"

@@ -1,6 +1,9 @@
 #include "server/log/log.hpp"
 
-#include <spdlog/sinks/stdout_color_sinks.h>
+#include "driver/protocol/printable.hpp"
+
+#include <spdlog/details/log_msg.h>
+#include <spdlog/sinks/ansicolor_sink.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -13,8 +16,28 @@ namespace {
 
 spdlog::level::level_enum level_of_new_loggers = spdlog::level::info;
 
+using Base = spdlog::sinks::ansicolor_stderr_sink_mt;
+
+/// Standard error. Messages quote lidars, peers and files, so each is made printable here.
+class PrintableSink final : public Base {
+public:
+    void log(const spdlog::details::log_msg& message) override {
+        const auto name = printable(message.logger_name);
+        const auto text = printable(message.payload);
+        auto shown = message;
+        shown.logger_name = name;
+        shown.payload = text;
+        Base::log(shown);
+    }
+
+private:
+    static std::string printable(spdlog::string_view_t text) {
+        return protocol::printable({text.data(), text.size()});
+    }
+};
+
 std::shared_ptr<spdlog::sinks::sink> the_sink() {
-    static const auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
+    static const auto sink = std::make_shared<PrintableSink>();
     return sink;
 }
 

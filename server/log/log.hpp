@@ -12,7 +12,8 @@ namespace sweepcast::log {
 /// it is none of these.
 [[nodiscard]] bool set_level(const std::string& level);
 
-/// A logger whose lines carry the part's name. Safe from any thread.
+/// Returns a logger whose lines carry the part's name. Each message is one printable line, whatever
+/// it quotes. Safe from any thread.
 [[nodiscard]] std::shared_ptr<spdlog::logger> make_logger(const std::string& part);
 
 }  // namespace sweepcast::log

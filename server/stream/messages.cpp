@@ -1,7 +1,7 @@
 #include "server/stream/messages.hpp"
 
+#include "driver/protocol/printable.hpp"
 #include "server/frame/dictionary.hpp"
-#include "server/frame/printable.hpp"
 #include "server/stream/lidar_message.hpp"
 #include "server/version.hpp"
 #include "sweepcast/v1/stream.pb.h"
@@ -41,7 +41,7 @@ Result<Order, Refusal> order_from(v1::Subscribe subscribe, const hub::LocalHub& 
                 subscribe.request()};
         }
         wish.lidar = lidar->number;
-        subscribe.set_lidar(frame::printable(lidar->id));
+        subscribe.set_lidar(protocol::printable(lidar->id));
     }
     auto frames = frame_wish(subscribe);
     if (!frames) {

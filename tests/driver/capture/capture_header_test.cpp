@@ -45,12 +45,12 @@ TEST(CaptureHeaderTest, NeedsOnlyWhatDecodingNeeds) {
     EXPECT_FALSE(read->mode_id);
 }
 
-TEST(CaptureHeaderTest, KeepsWhatATerminalWouldObeyOutOfTexts) {
+TEST(CaptureHeaderTest, MakesTextsPrintable) {
     auto header = full_header();
     header.mode = "Sensi\x1B[2J\ntivity";
     const auto read = header_from_json(to_json(header));
     ASSERT_TRUE(read);
-    EXPECT_EQ(read->mode, "Sensi[2Jtivity");
+    EXPECT_EQ(read->mode, "Sensi\\u001b[2J\\ntivity");
 }
 
 class BadHeaderTest : public testing::TestWithParam<const char*> {};

@@ -59,9 +59,9 @@ TEST_F(PortHolderTest, PassesOverWhatIsNoProcess) {
     EXPECT_THAT(holders_of(port_), IsEmpty());
 }
 
-TEST_F(PortHolderTest, KeepsOnlyPrintableTextOfACommand) {
+TEST_F(PortHolderTest, MakesTheNameOfACommandPrintable) {
     run("7", "evil\x1b[2J", port_);
-    EXPECT_THAT(holders_of(port_), ElementsAre(PortHolder{7, "evil[2J"}));
+    EXPECT_THAT(holders_of(port_), ElementsAre(PortHolder{7, "evil\\u001b[2J"}));
 }
 
 TEST_F(PortHolderTest, FindsNobodyForAPortThatDoesNotExist) {

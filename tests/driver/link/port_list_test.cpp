@@ -115,7 +115,7 @@ TEST_F(PortListTest, LeavesOutAdaptersWithNonsenseForAnId) {
     }
 }
 
-TEST_F(PortListTest, KeepsOnlyPrintableTextOfAnAdapter) {
+TEST_F(PortListTest, MakesTextsOfAnAdapterPrintable) {
     plug_in(
         "ttyUSB0",
         {"1-1", "10c4", "ea60", "\x1b[31mred\x07 \xff", std::string(5000, 'x')},
@@ -123,7 +123,7 @@ TEST_F(PortListTest, KeepsOnlyPrintableTextOfAnAdapter) {
     );
     const auto ports = list_usb_ports(roots());
     ASSERT_EQ(ports.size(), 1U);
-    EXPECT_EQ(ports[0].product, "[31mred");
+    EXPECT_EQ(ports[0].product, "\\u001b[31mred\\u0007 \\xff");
     EXPECT_EQ(ports[0].serial, std::string(255, 'x'));
 }
 

@@ -212,7 +212,7 @@ TEST(ScanColumns, AreReadableWhateverADeviceCallsItsMode) {
     captured.mode = "Fa\xff\x1bst";
     v1::Scan parsed;
     ASSERT_TRUE(parsed.ParseFromString(columns_of(captured).SerializeAsString()));
-    EXPECT_EQ(parsed.mode(), "Fa??st");
+    EXPECT_EQ(parsed.mode(), "Fa\\xff\\u001bst");
 }
 
 TEST(ScanColumns, BringBackEveryAngle) {
