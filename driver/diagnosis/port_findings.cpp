@@ -115,7 +115,7 @@ Finding judge_permission(const PortLook& port) {
 
 Finding judge_holder(const PortLook& port, bool refused) {
     const bool others = std::ranges::any_of(port.facts.holders, [&](const auto& holder) {
-        return holder.pid != port.facts.own_pid;
+        return holder.pid != port.facts.own_pid && !holder.is_emulator;
     });
     if (!refused && !others) {
         return {Step::holder, Verdict::ok, "no other process has it open"};

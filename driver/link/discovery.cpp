@@ -53,7 +53,7 @@ private:
         std::error_code not_there;
         port.is_device = fs::is_character_file(node, not_there);
         if (port.is_device) {
-            const auto holders = find_port_holders(node, proc_);
+            const auto holders = find_port_competitors(node, proc_);
             if (!holders.empty()) {
                 port.holder =
                     fmt::format("{} (process {})", holders.front().command, holders.front().pid);

@@ -152,10 +152,13 @@ std::string hint_to_stop(const PortHolder& holder) {
 
 Problem explain_busy(const std::string& path, const PortFacts& facts) {
     Problem problem{errc::port_busy, path + " is in use", {}};
-    const auto other =
-        std::find_if(facts.holders.begin(), facts.holders.end(), [&](const auto& holder) {
-            return holder.pid != facts.own_pid;
-        });
+    const auto is_other = [&](const auto& holder) { return holder.pid != facts.own_pid; };
+    auto other = std::find_if(facts.holders.begin(), facts.holders.end(), [&](const auto& holder) {
+        return is_other(holder) && !holder.is_emulator;
+    });
+    if (other == facts.holders.end()) {  // an emulator too can lock its port
+        other = std::find_if(facts.holders.begin(), facts.holders.end(), is_other);
+    }
     if (other != facts.holders.end()) {
         problem.cause += " by " + other->command + " (process " + std::to_string(other->pid) + ")";
         problem.hint = hint_to_stop(*other);

@@ -337,7 +337,7 @@ asio::awaitable<void> LidarPorts::ask(std::string path, Known known) {
     async::Notifier nothing(worker_->executor());
     do {
         std::optional<device::Found> lidar;
-        if (link::find_port_holders(node).empty()) {
+        if (link::find_port_competitors(node).empty()) {
             auto hints = sought_bauds();
             lidar = co_await ask_who(path, std::move(hints));
         }

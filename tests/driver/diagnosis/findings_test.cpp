@@ -114,6 +114,8 @@ std::vector<Row> port_rows() {
     member.facts.member = true;
     auto held = a_port();
     held.facts.holders = {{812, "ModemManager"}};
+    auto emulated = a_port();
+    emulated.facts.holders = {{812, "python3", true}};
     auto held_by_gateway = a_port();
     held_by_gateway.facts.holders = {{900, "sweepcast"}};
     return {
@@ -162,6 +164,7 @@ std::vector<Row> port_rows() {
          "container",
          "--device=/dev/ttyUSB0"},
         {"Free", judge_holder(a_port(), false), Step::holder, Verdict::ok, "", "", ""},
+        {"Emulated", judge_holder(emulated, false), Step::holder, Verdict::ok, "", "", ""},
         {"HeldWithoutALock",
          judge_holder(held, false),
          Step::holder,

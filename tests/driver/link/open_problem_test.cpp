@@ -103,6 +103,14 @@ TEST(OpenProblem, NamesTheProcessThatHoldsThePort) {
     EXPECT_THAT(problem.hint, HasSubstr("kill 812"));
 }
 
+TEST(OpenProblem, NamesACompetitorBeforeAnEmulator) {
+    PortFacts facts = a_port();
+    facts.holders = {{700, "python3", true}, {812, "screen"}};
+    EXPECT_THAT(explain_open_error(path, EBUSY, facts).cause, HasSubstr("screen (process 812)"));
+    facts.holders.pop_back();
+    EXPECT_THAT(explain_open_error(path, EBUSY, facts).cause, HasSubstr("python3 (process 700)"));
+}
+
 TEST(OpenProblem, KnowsHowToStopModemManager) {
     PortFacts facts = a_port();
     facts.holders = {{812, "ModemManager"}};

@@ -3,6 +3,7 @@
 
 #include "tests/driver/link/pty_pair.hpp"
 #include "tests/driver/link/scratch_directory.hpp"
+#include "tests/support/process.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -40,6 +41,53 @@ TEST_F(PortHolderTest, NamesEveryProcessThatHasThePortOpen) {
         holders_of(port_),
         ElementsAre(PortHolder{99, "minicom"}, PortHolder{812, "ModemManager"})
     );
+}
+
+/// A pseudo-terminal with both ends open in a process of its own, as an emulator of a device has
+/// it.
+class Emulator {
+public:
+    Emulator()
+        : process_(
+              {"/usr/bin/python3",
+               "-c",
+               "import os, signal\n"
+               "master, slave = os.openpty()\n"
+               "print(os.ttyname(slave), flush=True)\n"
+               "signal.pause()\n"}
+          )
+        , port_(process_.wait_for_output("/dev/pts/")) {}
+
+    [[nodiscard]] const std::string& port() const { return port_; }
+    [[nodiscard]] pid_t pid() const { return process_.pid(); }
+
+private:
+    test::Process process_;
+    std::string port_;
+};
+
+TEST(PortHolders, TellAnEmulatorByItsOtherEnd) {
+    const Emulator emulator;
+    const auto holders = find_port_holders(emulator.port());
+    ASSERT_EQ(holders.size(), 1U);
+    EXPECT_EQ(holders[0].pid, emulator.pid());
+    EXPECT_TRUE(holders[0].is_emulator);
+}
+
+TEST(PortCompetitors, AreNoEmulators) {
+    const Emulator emulator;
+    EXPECT_THAT(find_port_competitors(emulator.port()), IsEmpty());
+}
+
+TEST(PortCompetitors, AreThoseWithTheMasterOfAnotherTerminal) {
+    const Emulator emulator;
+    const PtyPair ours;
+    const int slave = ::open(emulator.port().c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+    EXPECT_THAT(
+        find_port_competitors(emulator.port()),
+        ElementsAre(Field(&PortHolder::pid, ::getpid()))
+    );
+    ::close(slave);
 }
 
 TEST_F(PortHolderTest, FollowsTheLinksOfUdev) {

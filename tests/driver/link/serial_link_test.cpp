@@ -5,6 +5,7 @@
 #include "tests/driver/link/link_fixture.hpp"
 #include "tests/driver/link/link_peers.hpp"
 #include "tests/driver/link/scratch_directory.hpp"
+#include "tests/support/process.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -48,10 +49,11 @@ std::ptrdiff_t descriptors_of(const std::string& file) {
 /// Another process that has a port open, and does not ask who else does.
 class Holder {
 public:
-    explicit Holder(const std::string& port)
-        : fd_(::open(port.c_str(), O_RDWR | O_NOCTTY))
+    explicit Holder(const PtyPair& pty)
+        : fd_(::open(pty.path().c_str(), O_RDWR | O_NOCTTY))
         , pid_(::fork()) {
         if (pid_ == 0) {
+            ::close(pty.fd());  // whoever has both ends plays the device
             for (;;) {
                 ::pause();
             }
@@ -73,7 +75,7 @@ private:
 
 TEST_F(SerialLinkTest, DoesNotOpenAPortThatAnotherProcessHasOpen) {
     const PtyPair held;
-    const Holder holder(held.path());
+    const Holder holder(held);
     const Problem problem = open_badly(held.path());
     EXPECT_EQ(problem.code, errc::port_busy);
     EXPECT_THAT(problem.cause, HasSubstr("(process " + std::to_string(holder.pid()) + ")"));
@@ -84,6 +86,20 @@ TEST_F(SerialLinkTest, ReportsAHangUpToReadsAndWritesAndDtr) {
     EXPECT_EQ(read(buffer_, in(10s)).error(), errc::disconnected);
     EXPECT_EQ(write(Bytes{7}, in(10s)).error(), errc::disconnected);
     EXPECT_EQ(link_->set_dtr(true).error(), errc::disconnected);
+}
+
+TEST_F(SerialLinkTest, OpensAPortWhoseEmulatorHasItOpenToo) {
+    test::Process emulator(
+        {"/usr/bin/python3",
+         "-c",
+         "import os, signal\n"
+         "master, slave = os.openpty()\n"
+         "print(os.ttyname(slave), flush=True)\n"
+         "signal.pause()\n"}
+    );
+    const auto port = emulator.wait_for_output("/dev/pts/");
+    const auto opened = open_serial_now(context_.get_executor(), port, 115200);
+    EXPECT_TRUE(opened) << opened.error().cause;
 }
 
 TEST_F(SerialLinkTest, NamesThisProcessWhenThePortIsAlreadyOurs) {
