@@ -45,6 +45,13 @@ def check_readme(consumer: pathlib.Path) -> None:
             raise SystemExit(f"README.md shows another {name} than {consumer / name}")
 
 
+def check_usage(consumer: pathlib.Path) -> None:
+    """Without an argument the program says how to call it."""
+    called = subprocess.run([consumer], timeout=60, stderr=subprocess.PIPE, text=True)
+    if called.returncode != 2 or not called.stderr.startswith("usage: consumer URL"):
+        raise SystemExit(f"without an argument it ends with {called.returncode} and says {called.stderr!r}")
+
+
 def main() -> None:
     cmake, build, consumer, compiler, flags = sys.argv[1:]
     check_readme(pathlib.Path(consumer))
@@ -55,6 +62,7 @@ def main() -> None:
         os.environ["CMAKE_PREFIX_PATH"] = str(prefix)
         run(cmake, "-S", consumer, "-B", str(built), f"-DCMAKE_CXX_COMPILER={compiler}", f"-DCMAKE_CXX_FLAGS={flags}")
         run(cmake, "--build", str(built))
+        check_usage(built / "consumer")
         gateway, stream = start_gateway(prefix / "bin" / "sweepcast")
         try:
             printed = run(str(built / "consumer"), stream).splitlines()

@@ -9,6 +9,7 @@ expects what the program promises to print.
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -60,12 +61,42 @@ def run(commands: str, port: str, folder: pathlib.Path) -> list[re.Match]:
     return promised
 
 
+def check_endings(program: pathlib.Path, interpreter: str, binary: str) -> None:
+    """A client says why it ends in one line: called wrongly, without a gateway, when that stops, and at Ctrl-C."""
+    name = program.name
+
+    def expect(client: subprocess.Popen, code: int, says: str) -> None:
+        said = client.communicate(timeout=TIMEOUT_S)[1]
+        if client.returncode != code or not re.fullmatch(says + "\n", said):
+            raise SystemExit(f"{name} ended with {client.returncode} instead of {code}, and said:\n{said}")
+
+    def start(*arguments: str) -> subprocess.Popen:
+        command = [interpreter, name, *arguments]
+        return subprocess.Popen(
+            command, cwd=program.parent, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+
+    expect(start(), 2, f"usage: {name} HOST PORT")
+    expect(start("127.0.0.1", "1"), 1, f"{name}: .*(refused|REFUSED).*")
+    gateway, port = start_gateway(binary)
+    interrupted, left = start("127.0.0.1", port), start("127.0.0.1", port)
+    try:
+        for client in (interrupted, left):
+            client.stdout.readline()
+        interrupted.send_signal(signal.SIGINT)
+        expect(interrupted, 0, f"{name}: stopped")
+    finally:
+        gateway.terminate()
+        gateway.wait()
+    expect(left, 1, f"{name}: the gateway has ended the connection")
+
+
 # What follows the functions of a client in the check of them: reads each scan on file as the vendor's decoder read the
 # bytes behind it. By language: the client's file, where its functions end, what runs it, and the checker.
 CHECKERS = {
     "python": (
         "client.py",
-        "\nwish = ",
+        "\nif len(sys.argv)",
         "/usr/bin/python3",
         """
 import json, pathlib
@@ -84,7 +115,7 @@ for path in sorted((vectors / "scans").glob("*.json")):
     ),
     "node": (
         "client.mjs",
-        "\nconst socket = ",
+        "\nfunction end(",
         "node",
         """
 import assert from "node:assert";
@@ -110,9 +141,7 @@ for (const name of fs.readdirSync(`${vectors}/scans`).filter((name) => name.ends
 def check_against_vectors(language: str, program: str, repository: pathlib.Path, folder: pathlib.Path) -> None:
     """The functions of the client read the scans on file as the vendor's decoder read the bytes behind them."""
     file, functions_end, interpreter, checker = CHECKERS[language]
-    functions = program[: program.index(functions_end)].replace(
-        "stream = socket.create_connection((sys.argv[1], int(sys.argv[2]))).makefile(\"rwb\")", ""
-    )
+    functions = program[: program.index(functions_end)]
     check = "check_" + file
     (folder / check).write_text(functions + checker, encoding="utf-8")
     subprocess.run([interpreter, check, str(repository / "tests/vectors")], cwd=folder, check=True)
@@ -131,7 +160,9 @@ def main() -> None:
         try:
             lines = run(marked[language], port, folder)
             if language in CHECKERS:
-                check_against_vectors(language, marked[CHECKERS[language][0]], repository, folder)
+                file, _, interpreter, _ = CHECKERS[language]
+                check_against_vectors(language, marked[file], repository, folder)
+                check_endings(folder / file, interpreter, binary)
         finally:
             gateway.terminate()
             gateway.wait()

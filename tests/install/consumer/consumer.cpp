@@ -3,7 +3,11 @@
 #include <iostream>
 #include <sweepcast/blocking_client.hpp>
 
-int main(int, char** argv) {
+int main(int argc, char** argv) {
+    if (argc != 2) {
+        std::cerr << "usage: consumer URL, such as tcp://127.0.0.1:8081\n";
+        return 2;
+    }
     const auto url = sweepcast::client::parse_stream_url(argv[1]);
     if (!url) {
         std::cerr << url.error().cause << ": " << url.error().hint << "\n";
