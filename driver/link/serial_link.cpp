@@ -48,8 +48,8 @@ bool may_be_terminal(const std::string& path) {
            major(found.st_rdev) != memory_devices;
 }
 
-/// Whether another process competes for `path`, as far as we may see. Looked at twice: one that only
-/// passes by does not count.
+/// Whether another process competes for `path`, as far as we may see. Looked at twice: one that
+/// only passes by does not count.
 bool held_by_another(const std::string& path) {
     const auto others = [&path] {
         auto holders = find_port_competitors(path);
