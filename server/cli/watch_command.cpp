@@ -101,6 +101,11 @@ private:
         return true;
     }
 
+    bool take_in(const client::LeftOut& left_out) {
+        output_->on_left_out(left_out);
+        return true;
+    }
+
     bool take_in(const v1::StreamStats& stats) {
         output_->on_stats(stats);
         return true;

@@ -45,6 +45,7 @@ public:
             stats.frames_dropped()
         ));
     }
+    void on_left_out(const client::LeftOut& left_out) override { note(left_out.why.cause); }
     void on_lidar(const v1::Lidar&) override {}
     void on_end() override {}
 
@@ -132,6 +133,7 @@ class TableOutput final : public WatchOutput {
 public:
     void on_connected(const client::Connected& connected) override {
         note_.clear();
+        left_out_.clear();
         rows_.clear();
         for (const auto& lidar : connected.hello.lidars()) {
             rows_[lidar.number()].lidar = lidar;
@@ -145,6 +147,11 @@ public:
 
     void on_refusal(const v1::StreamError& refusal) override {
         set_note(refusal.message() + "; waiting for it");
+    }
+
+    void on_left_out(const client::LeftOut& left_out) override {
+        left_out_ = left_out.why.cause;
+        print();
     }
 
     void on_lidar(const v1::Lidar& lidar) override {
@@ -230,12 +237,16 @@ private:
         for (const auto& [number, row] : rows_) {
             text += line(row) + end;
         }
-        if (!note_.empty()) {
-            text += note_ + end;
+        std::size_t notes = 0;
+        for (const auto* note : {&left_out_, &note_}) {
+            if (!note->empty()) {
+                text += *note + end;
+                ++notes;
+            }
         }
         // What is left of a longer table before.
         text += terminal_ ? "\x1b[J" : "";
-        lines_ = rows_.size() + (note_.empty() ? 1 : 2);
+        lines_ = 1 + rows_.size() + notes;
         write(text);
     }
 
@@ -259,6 +270,7 @@ private:
     std::map<std::uint32_t, Row> rows_;
     Clock::time_point printed_at_{};
     std::size_t lines_{};
+    std::string left_out_;  ///< shown as long as the connection is there
     std::string note_;
 };
 

@@ -23,6 +23,8 @@ public:
     virtual void on_stats(const v1::StreamStats& stats) = 0;
     /// A refusal that may pass: the lidar is not there yet.
     virtual void on_refusal(const v1::StreamError& refusal) = 0;
+    /// The gateway says more than a client keeps.
+    virtual void on_left_out(const client::LeftOut& left_out) = 0;
     /// Nothing more will come.
     virtual void on_end() = 0;
 

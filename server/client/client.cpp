@@ -1,5 +1,6 @@
 #include "server/client/client.hpp"
 
+#include "server/client/known_lidars.hpp"
 #include "server/client/missed_frames.hpp"
 #include "server/client/stream_client.hpp"
 #include "server/frame/dictionary.hpp"
@@ -44,6 +45,19 @@ Problem no_gateway(const error_code& failed, const StreamUrl& url) {
         "check the port: usually tcp://HOST:8081, or ws://HOST:8080 for HTTP's"};
 }
 
+Problem too_many_lidars(const StreamUrl& url) {
+    return {
+        make_error_code(boost::system::errc::value_too_large),
+        fmt::format(
+            "{}:{} names more than {} lidars, or names of more than {} bytes: those are left out",
+            url.url_host(),
+            url.port,
+            most_lidars,
+            longest_lidar_name
+        ),
+        "is it a gateway of yours? Subscribe to one of its lidars"};
+}
+
 Problem cancelled_by_user() {
     return {make_error_code(asio::error::operation_aborted), "cancelled", ""};
 }
@@ -66,6 +80,7 @@ struct Client::Impl {
     Result<Event, Problem> lost(Problem why);
     Result<std::optional<Event>, Problem> take(const v1::ServerMessage& message);
     Result<std::optional<Event>, Problem> take(const v1::Frame& frame);
+    std::optional<Event> leave_out(std::uint64_t how_many);
     bool brings_refused_lidar(const v1::ServerMessage& message);
 
     StreamUrl url;
@@ -73,8 +88,12 @@ struct Client::Impl {
     std::optional<v1::Subscribe> wish;
     std::shared_ptr<StreamClient> connection;  ///< null: not connected
     frame::FrameDecoder decoder;
+    KnownLidars known;
     MissedFrames missed;
-    asio::steady_timer wait;  ///< until the next attempt, or for cancel() during one
+    std::uint64_t left_out{};
+    bool left_out_told{};      ///< of this connection
+    std::optional<Event> due;  ///< what next() gives before it receives more
+    asio::steady_timer wait;   ///< until the next attempt, or for cancel() during one
     std::minstd_rand random{std::random_device{}()};
     std::optional<Clock::time_point> connected_at;
     Clock::time_point next_try;
@@ -127,6 +146,10 @@ void Client::cancel() {
     }
 }
 
+std::uint64_t Client::left_out() const {
+    return impl_->left_out;
+}
+
 std::uint64_t Client::bytes_received() const {
     return impl_->bytes_before + (impl_->connection ? impl_->connection->bytes_received() : 0);
 }
@@ -170,6 +193,8 @@ asio::awaitable<Result<v1::Hello, Problem>> Client::Impl::open() {
     closing.clear();
     refused_lidar.clear();
     missed = {};
+    left_out_told = false;
+    due.reset();
     asio::steady_timer deadline(wait.get_executor(), options.connect_limit);
     auto outcome = co_await (
         connection->receive() || deadline.async_wait(asio::as_tuple(asio::use_awaitable))
@@ -187,13 +212,14 @@ asio::awaitable<Result<v1::Hello, Problem>> Client::Impl::open() {
     if (!(*message)->has_hello()) {
         co_return no_gateway(make_error_code(boost::system::errc::protocol_error), url);
     }
-    const auto& hello = (*message)->hello();
+    auto hello = (*message)->hello();
     if (hello.protocol_version() != spoken_version) {
         co_return Problem{
             make_error_code(boost::system::errc::protocol_not_supported),
             fmt::format("the gateway speaks version {} of the stream", hello.protocol_version()),
             fmt::format("this program speaks version {}: update the older one", spoken_version)};
     }
+    due = leave_out(known.begin(hello));
     co_return hello;
 }
 
@@ -223,6 +249,9 @@ asio::awaitable<void> Client::Impl::send_wish() {
 }
 
 asio::awaitable<Result<Event, Problem>> Client::Impl::receive() {
+    if (auto event = std::exchange(due, std::nullopt)) {
+        co_return std::move(*event);
+    }
     for (;;) {
         const auto from = connection;
         const auto message = co_await from->receive();
@@ -272,7 +301,7 @@ Result<Event, Problem> Client::Impl::lost(Problem why) {
 Result<std::optional<Event>, Problem> Client::Impl::take(const v1::ServerMessage& message) {
     switch (message.message_case()) {
     case v1::ServerMessage::kLidar:
-        return std::optional<Event>(message.lidar());
+        return known.admit(message.lidar()) ? std::optional<Event>(message.lidar()) : leave_out(1);
     case v1::ServerMessage::kFrame:
         return take(message.frame());
     case v1::ServerMessage::kStats:
@@ -297,6 +326,10 @@ Result<std::optional<Event>, Problem> Client::Impl::take(const v1::ServerMessage
 }
 
 Result<std::optional<Event>, Problem> Client::Impl::take(const v1::Frame& frame) {
+    const auto missed_before = missed.before(frame);
+    if (!missed_before) {
+        return leave_out(1);
+    }
     auto decoded = decoder.decode(frame);
     if (!decoded) {
         return Problem{
@@ -311,10 +344,19 @@ Result<std::optional<Event>, Problem> Client::Impl::take(const v1::Frame& frame)
     scan.sector = frame.sector();
     scan.last = frame.last();
     scan.omitted = frame.omitted();
-    scan.missed = missed.before(frame);
+    scan.missed = *missed_before;
     scan.wire_bytes = frame.ByteSizeLong();
     scan.scan = std::move(*decoded);
     return std::optional<Event>(std::move(scan));
+}
+
+/// Counts what is left out, and gives the event that tells of it, the first time in a connection.
+std::optional<Event> Client::Impl::leave_out(std::uint64_t how_many) {
+    left_out += how_many;
+    if (how_many == 0 || std::exchange(left_out_told, true)) {
+        return std::nullopt;
+    }
+    return LeftOut{too_many_lidars(url)};
 }
 
 /// Whether the lidar is there now that a wish was refused for.

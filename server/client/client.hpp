@@ -64,6 +64,9 @@ public:
     /// Ends the connection and a next() under way; for good.
     void cancel();
 
+    /// Lidars, states and frames left out so far, over all connections (see LeftOut).
+    [[nodiscard]] std::uint64_t left_out() const;
+
     /// Bytes received so far, over all connections, framing included.
     [[nodiscard]] std::uint64_t bytes_received() const;
 

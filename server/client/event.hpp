@@ -45,6 +45,12 @@ struct Scan {
     frame::DecodedScan scan;
 };
 
+/// The gateway names more lidars than a client keeps (256), or names of more than 256 bytes: what
+/// it says of those is left out. Once per connection; Client::left_out() counts on.
+struct LeftOut {
+    Problem why;
+};
+
 /// The lidar's state changed, or it is new: v1::Lidar. What is sent from now on: v1::Subscribed.
 /// Frames had to be dropped: v1::StreamStats. A wish is refused: v1::StreamError; what was wished
 /// before stays.
@@ -55,6 +61,7 @@ using Event = std::variant<
     v1::Lidar,
     v1::Subscribed,
     v1::StreamStats,
-    v1::StreamError>;
+    v1::StreamError,
+    LeftOut>;
 
 }  // namespace sweepcast::client

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 namespace sweepcast::v1 {
@@ -17,8 +18,9 @@ namespace sweepcast::client {
 /// of which nothing came.
 class MissedFrames {
 public:
-    /// How many are missing directly before this frame.
-    std::uint64_t before(const v1::Frame& frame);
+    /// Returns how many frames are missing directly before this one. None if the frame is of a
+    /// lidar too many, or has a name too long: it is left out.
+    std::optional<std::uint64_t> before(const v1::Frame& frame);
 
 private:
     struct Last {

@@ -154,6 +154,9 @@ std::string LidarMemory::settle_home(const std::string& serial, const std::strin
         const auto known = lidars_.find(serial);
         return known != lidars_.end() ? known->second.home : std::string();
     }
+    if (!homes_.contains(serial) && homes_.size() >= most_lidars) {
+        return {};  // a device can make up serial numbers without end
+    }
     auto& noted = homes_.try_emplace(serial, home).first->second;
     if (noted != home) {
         noted.clear();

@@ -24,6 +24,8 @@ constexpr std::size_t most_hops = 4;
 constexpr std::string_view via = " via ";
 constexpr double sector_deg = 30;
 constexpr std::size_t short_serial_digits = 8;
+/// How many bytes of ids a hint lists.
+constexpr std::size_t enough_ids = 200;
 
 client::ClientOptions states_first() {
     client::ClientOptions options;
@@ -165,6 +167,10 @@ void RemoteLidar::take(const v1::StreamStats& stats) {
     log_->warn("too slow for {}: {} frames lost so far", place_.url, stats.frames_dropped());
 }
 
+void RemoteLidar::take(const client::LeftOut& left_out) {
+    log_->warn("{}", left_out.why.cause);
+}
+
 bool RemoteLidar::is_meant(const v1::Lidar& lidar) const {
     const auto& id = place_.where.id;
     // As at its own gateway: its id, its serial number or the digits that begin it, its port's
@@ -179,7 +185,11 @@ void RemoteLidar::choose() {
     std::string ids;
     std::size_t meant = 0;
     for (const auto& [number, lidar] : there_) {
-        ids += (ids.empty() ? "" : ", ") + lidar.id();
+        if (ids.size() < enough_ids) {
+            ids += (ids.empty() ? "" : ", ") + lidar.id();
+        } else if (!ids.ends_with(", ...")) {
+            ids += ", ...";
+        }
         if (is_meant(lidar)) {
             ++meant;
             chosen_ = number;

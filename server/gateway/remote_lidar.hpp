@@ -72,6 +72,7 @@ private:
     void take(const v1::StreamError& refusal);
     void take(const v1::Subscribed&) {}
     void take(const v1::StreamStats& stats);
+    void take(const client::LeftOut& left_out);
 
     void choose();
     [[nodiscard]] bool is_meant(const v1::Lidar& lidar) const;
@@ -90,9 +91,10 @@ private:
     std::shared_ptr<spdlog::logger> log_;
     std::unique_ptr<client::Client> client_;  ///< null: the life has ended
     hub::LidarFrames frames_;
-    std::map<std::uint32_t, v1::Lidar> there_;  ///< the other gateway's lidars, by number
-    std::optional<std::uint32_t> chosen_;       ///< which of them it is
-    std::optional<v1::Subscribe> due_wish_;     ///< to be sent
+    /// The other gateway's lidars, by number; the client bounds how many.
+    std::map<std::uint32_t, v1::Lidar> there_;
+    std::optional<std::uint32_t> chosen_;    ///< which of them it is
+    std::optional<v1::Subscribe> due_wish_;  ///< to be sent
     RemoteClock clock_;
     std::chrono::microseconds offset_{};  ///< of the sweep under way
     client::SweepJoiner joiner_;

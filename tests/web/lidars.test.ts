@@ -31,6 +31,20 @@ test("a lidar that is identified keeps its place and answers to both ids", () =>
   assert.equal(all.find("8a5b9cf1")?.number, 1);
 });
 
+test("a lidar that changes its id again and again answers to the last two", () => {
+  const all = lidars(first);
+  for (let k = 0; k < 5; ++k) all.put(lidar({ number: 1, id: `id${k}` }));
+  const found = ["ttyUSB0", "id0", "id2", "id3", "id4"].filter((id) => all.find(id));
+  assert.deepEqual(found, ["id3", "id4"]);
+});
+
+test("lidars beyond the bound are left out, those known go on", () => {
+  const all = lidars(...Array.from({ length: 300 }, (_, k) => lidar({ number: k, id: `id${k}` })));
+  assert.equal(all.all().length, 256);
+  all.put(lidar({ number: 0, id: "renamed" }));
+  assert.equal(all.find("renamed")?.number, 0);
+});
+
 test("a new greeting forgets what was before", () => {
   const all = lidars(first, second);
   all.replace([second]);
@@ -77,8 +91,14 @@ for (const [name, fields] of [
 
 test("in the list a lidar is its model, and then which one", () => {
   const known = { id: "8a5b9cf1", device: { model: "A1M8" } };
-  assert.deepEqual(lidarTitle(lidar(known)), { title: "A1M8", place: "8a5b9cf1" });
+  assert.deepEqual(lidarTitle(lidar(known)), {
+    title: "A1M8",
+    place: "8a5b9cf1",
+  });
   assert.deepEqual(lidarTitle(lidar({ ...known, isVirtual: true })).place, "8a5b9cf1, virtual");
   const unknown = { id: "ttyUSB0", url: "/dev/ttyUSB0" };
-  assert.deepEqual(lidarTitle(lidar(unknown)), { title: "/dev/ttyUSB0", place: "" });
+  assert.deepEqual(lidarTitle(lidar(unknown)), {
+    title: "/dev/ttyUSB0",
+    place: "",
+  });
 });

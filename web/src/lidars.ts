@@ -10,6 +10,9 @@ export {
   type ScanMode,
 } from "../gen/sweepcast/v1/lidar_pb";
 
+/// More lidars than any gateway has.
+const MOST_LIDARS = 256;
+
 /// A lidar keeps its number while its id changes once, when it is identified; it goes on answering to
 /// both ids, here too.
 export class Lidars {
@@ -23,8 +26,16 @@ export class Lidars {
     lidars.forEach((lidar) => this.put(lidar));
   }
 
-  /// One that is new or has changed.
+  /// One that is new or has changed. A new one beyond the bound is left out. Of the names that a
+  /// lidar had, the present and the one before are kept.
   put(lidar: Lidar): void {
+    if (!this.byNumber.has(lidar.number) && this.byNumber.size >= MOST_LIDARS) return;
+    const before = this.byNumber.get(lidar.number)?.id;
+    if (before !== undefined && before !== lidar.id) {
+      for (const [id, number] of this.numberOf) {
+        if (number === lidar.number && id !== before) this.numberOf.delete(id);
+      }
+    }
     this.byNumber.set(lidar.number, lidar);
     this.numberOf.set(lidar.id, lidar.number);
   }

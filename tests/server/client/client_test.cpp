@@ -2,6 +2,7 @@
 #include "server/client/client.hpp"
 
 #include "server/client/blocking_client.hpp"
+#include "server/client/known_lidars.hpp"
 #include "server/frame/frame_encoder.hpp"
 #include "server/frame/message_framing.hpp"
 
@@ -95,10 +96,10 @@ ClientOptions impatient(Reconnect reconnect = Reconnect::always) {
     return options;
 }
 
-frame::WireMessagePtr sweep_message(std::uint64_t sequence) {
+frame::WireMessagePtr sweep_message(std::uint64_t sequence, const std::string& lidar = "A") {
     static const std::vector<protocol::Sample> samples{{{}, {4000}, {100}, 188, 1}};
     frame::FrameContent content;
-    content.lidar = "A";
+    content.lidar = lidar;
     content.sequence = sequence;
     content.samples = samples;
     return frame::FrameEncoder().encode(content, {});
@@ -314,6 +315,69 @@ TEST_F(ClientTest, WaitsLongestAfterItWasGivenUp) {
     const auto& lost = std::get<Disconnected>(*event);
     EXPECT_EQ(lost.why.cause, "nonsense came");
     EXPECT_GE(lost.retry_in, 5000ms);
+    gateway.join();
+}
+
+v1::ServerMessage state_of(std::uint32_t number, const std::string& id) {
+    v1::ServerMessage message;
+    message.mutable_lidar()->set_number(number);
+    message.mutable_lidar()->set_id(id);
+    return message;
+}
+
+TEST_F(ClientTest, LeavesOutTheLidarsBeyondItsBoundAndSaysSoOnce) {
+    constexpr std::uint32_t too_many = 3;
+    Client client(context_.get_executor(), url(), impatient());
+    auto next = [&] {
+        auto event = boost::asio::co_spawn(context_, client.next(), boost::asio::use_future);
+        context_.restart();
+        context_.run();
+        return *event.get();
+    };
+    std::thread gateway([this] {
+        auto peer = accept();
+        v1::ServerMessage greeting;
+        greeting.mutable_hello()->set_protocol_version(1);
+        for (std::uint32_t i = 0; i < most_lidars + too_many; ++i) {
+            greeting.mutable_hello()->add_lidars()->set_number(i);
+        }
+        peer.say(greeting);
+        peer.hear();
+        peer.say(state_of(most_lidars, "one more"));
+        peer.say(state_of(0, std::string(longest_lidar_name + 1, 'A')));
+        peer.say(state_of(0, "known"));
+        EXPECT_ANY_THROW(peer.hear()) << "the connection is to end";
+    });
+    EXPECT_EQ(
+        static_cast<std::size_t>(std::get<Connected>(next()).hello.lidars_size()),
+        most_lidars
+    );
+    EXPECT_TRUE(std::holds_alternative<LeftOut>(next()));
+    EXPECT_EQ(std::get<v1::Lidar>(next()).id(), "known");
+    EXPECT_EQ(client.left_out(), too_many + 2U);
+    client.cancel();
+    gateway.join();
+}
+
+TEST_F(ClientTest, LeavesOutTheFramesOfLidarsBeyondItsBound) {
+    BlockingClient client(url(), impatient());
+    std::thread gateway([this] {
+        auto peer = accept();
+        peer.greet();
+        peer.hear();
+        for (std::size_t i = 0; i <= most_lidars; ++i) {
+            peer.say(*sweep_message(1, std::to_string(i)));
+        }
+        peer.say(*sweep_message(2, "0"));
+        peer.hear();  // holds until the client has seen it all
+    });
+    expect_next<Connected>(client);
+    for (std::size_t i = 0; i < most_lidars; ++i) {
+        EXPECT_EQ(expect_next<Scan>(client).lidar, std::to_string(i));
+    }
+    expect_next<LeftOut>(client);
+    EXPECT_EQ(expect_next<Scan>(client).lidar, "0");
+    client.set_wish(std::nullopt);
     gateway.join();
 }
 

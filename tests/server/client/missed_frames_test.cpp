@@ -1,9 +1,13 @@
 // What the numbers of frames tell of those that did not come.
 #include "server/client/missed_frames.hpp"
 
+#include "server/client/known_lidars.hpp"
 #include "sweepcast/v1/stream.pb.h"
 
 #include <gtest/gtest.h>
+
+#include <optional>
+#include <string>
 
 namespace sweepcast::client {
 namespace {
@@ -58,6 +62,24 @@ TEST(MissedFramesTest, OfSectorsAreAtLeastThoseThatTheNumbersShow) {
     EXPECT_EQ(missed.before(sector(2, 0)), 0U);
     EXPECT_EQ(missed.before(sector(3, 0)), 1U) << "the end of the one before";
     EXPECT_EQ(missed.before(sector(6, 2)), 1U + 2U + 2U) << "an end, two sweeps, a beginning";
+}
+
+TEST(MissedFramesTest, LeavesOutTheFramesOfMoreLidarsThanMost) {
+    MissedFrames missed;
+    for (std::size_t i = 0; i < most_lidars; ++i) {
+        EXPECT_EQ(missed.before(sweep(1, 0, std::to_string(i).c_str())), 0U);
+    }
+    EXPECT_EQ(missed.before(sweep(1, 0, "one more")), std::nullopt);
+    EXPECT_EQ(missed.before(sweep(3, 0, "0")), 1U) << "those known go on";
+}
+
+TEST(MissedFramesTest, LeavesOutFramesWithTooLongAName) {
+    MissedFrames missed;
+    EXPECT_EQ(missed.before(sweep(1, 0, std::string(longest_lidar_name, 'A').c_str())), 0U);
+    EXPECT_EQ(
+        missed.before(sweep(1, 0, std::string(longest_lidar_name + 1, 'A').c_str())),
+        std::nullopt
+    );
 }
 
 TEST(MissedFramesTest, AreNoneIfTheTurnBeganAnew) {
