@@ -15,7 +15,6 @@
 #include <boost/system/errc.hpp>
 #include <fmt/format.h>
 
-#include <csignal>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -146,7 +145,7 @@ int capture(const CaptureArguments& arguments) {
     if (!options) {
         return report(options.error());
     }
-    std::signal(SIGPIPE, SIG_IGN);  // a reader that goes is an error of a write
+    ignore_write_signals();
     StopSignals signals;
     std::optional<Problem> problem;
     if (arguments.url.empty()) {

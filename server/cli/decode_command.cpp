@@ -9,6 +9,7 @@
 #include "server/cli/sample_printer.hpp"
 #include "server/cli/source_stream.hpp"
 
+#include "server/cli/stop_signals.hpp"
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -17,7 +18,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -209,7 +209,7 @@ int decode(const DecodeArguments& arguments) {
     if (!opened) {
         return report(opened.error());
     }
-    std::signal(SIGPIPE, SIG_IGN);  // a reader that goes is an error of a write
+    ignore_write_signals();
     PeekSource source(std::move(*opened));
     const auto is_capture = source.begins_with(capture::magic);
     if (!is_capture) {

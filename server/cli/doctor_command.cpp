@@ -127,7 +127,7 @@ int doctor(const DoctorArguments& arguments) {
         }
         urls.push_back(std::move(*url));
     }
-    std::signal(SIGPIPE, SIG_IGN);  // a reader that goes must not leave the motor on
+    ignore_write_signals();
     Printer printer(arguments.json);
     if (urls.empty()) {
         report_no_port(printer);

@@ -15,7 +15,6 @@
 #include <fmt/format.h>
 #include <google/protobuf/stubs/logging.h>
 
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -101,7 +100,7 @@ int serve(const ServeArguments& arguments) {
              "levels: debug, info, warning, error"}
         );
     }
-    std::signal(SIGPIPE, SIG_IGN);  // a client that goes is an error of a write, not of the program
+    ignore_write_signals();
     google::protobuf::SetLogHandler(nullptr);  // it would let any client write to our log
     auto options = to_options(arguments);
     if (!options) {

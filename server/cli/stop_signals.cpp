@@ -3,19 +3,72 @@
 #include <boost/asio/bind_cancellation_slot.hpp>
 #include <boost/asio/co_spawn.hpp>
 
+#include <algorithm>
+#include <array>
 #include <csignal>
 #include <exception>
+#include <signal.h>  // NOLINT(modernize-deprecated-headers): sigaction is POSIX, not C++
 #include <utility>
 
 namespace sweepcast::cli {
 
 namespace asio = boost::asio;
 
-StopSignals::StopSignals() : signals_(context_, SIGINT, SIGTERM) {
+namespace {
+
+/// Those that a user or a service manager sends to stop a program.
+constexpr std::array commands{SIGINT, SIGTERM, SIGQUIT};
+
+/// The others whose default action ends a program, but for real-time signals.
+constexpr std::array others{
+    SIGHUP,
+    SIGUSR1,
+    SIGUSR2,
+    SIGALRM,
+    SIGXCPU,
+    SIGVTALRM,
+    SIGPROF,
+    SIGIO,
+    SIGPWR,
+    SIGSTKFLT};
+
+/// Whether nobody ignores or handles it, as `nohup` and profilers do.
+bool has_default_action(int signal) {
+    struct sigaction action {};
+    return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_DFL;
+}
+
+}  // namespace
+
+void add_stop_signals(asio::signal_set& signals, int other_use) {
+    const auto add = [&](int signal) {
+        const bool always = signal == SIGINT || signal == SIGTERM;
+        if (signal != other_use && (always || has_default_action(signal))) {
+            signals.add(signal);
+        }
+    };
+    std::ranges::for_each(commands, add);
+    std::ranges::for_each(others, add);
+    for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) {
+        add(signal);
+    }
+}
+
+void ignore_write_signals() {
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
+}
+
+StopSignals::StopSignals() : signals_(context_) {
+    add_stop_signals(signals_);
     signals_.async_wait([this](const boost::system::error_code& cancelled, int) {
-        if (!cancelled) {
-            told_ = true;
-            signals_.clear();
+        if (cancelled) {
+            return;
+        }
+        told_ = true;
+        for (const int signal : commands) {
+            boost::system::error_code not_held;  // it was ignored at the start
+            signals_.remove(signal, not_held);
         }
     });
 }

@@ -1,4 +1,5 @@
-// StopSignals: Ctrl-C and the service manager's stop, for as long as a command runs.
+// StopSignals: Ctrl-C, the service manager's stop and every other signal that would end the
+// program, for as long as a command runs.
 #pragma once
 
 #include <boost/asio/awaitable.hpp>
@@ -10,8 +11,20 @@
 
 namespace sweepcast::cli {
 
-/// SIGINT and SIGTERM, held back from the moment it exists, so that none falls between two steps of
-/// a start. A second signal finds the default action again and ends the program at once.
+/// Adds every signal whose default action would end the program at once and leave a lidar's motor
+/// on, except `other_use`. A signal that is ignored (by `nohup`, for example) or handled already is
+/// left alone; SIGINT and SIGTERM are added in any case.
+/// Not among them: signals of faults in the program itself, such as SIGSEGV, and those that cannot
+/// be handled.
+void add_stop_signals(boost::asio::signal_set& signals, int other_use = 0);
+
+/// Makes a failed write return an error instead of ending the program: SIGPIPE (the reader is gone)
+/// and SIGXFSZ (the file is too large).
+void ignore_write_signals();
+
+/// Holds back the signals of add_stop_signals() from the moment it exists, so that none falls
+/// between two steps of a start. A second SIGINT, SIGTERM or SIGQUIT finds the default action again
+/// and ends the program at once. Others do not: a terminal that closes sends SIGHUP more than once.
 class StopSignals {
 public:
     StopSignals();

@@ -8,6 +8,7 @@
 #include "driver/virtual/persona.hpp"
 #include "driver/virtual/virtual_lidar.hpp"
 #include "server/cli/command.hpp"
+#include "server/cli/stop_signals.hpp"
 #include "server/log/log.hpp"
 
 #include <CLI/App.hpp>
@@ -195,10 +196,12 @@ int send(const std::string& control, const std::vector<std::string>& commands) {
     return 0;
 }
 
+    ignore_write_signals();
 int run(const VirtualLidarOptions& options) {
     asio::io_context context(1);
     // Before the port is there: a signal that comes early must not leave a link behind.
-    asio::signal_set signals(context, SIGINT, SIGTERM);
+    asio::signal_set signals(context);
+    add_stop_signals(signals, SIGUSR1);
     asio::signal_set plug_signals(context, SIGUSR1);
     auto lidar = VirtualLidar::create(context.get_executor(), options, log::make_logger("virtual"));
     if (!lidar) {

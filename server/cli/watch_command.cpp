@@ -12,7 +12,6 @@
 #include <boost/asio/this_coro.hpp>
 #include <fmt/core.h>
 
-#include <csignal>
 #include <cstdint>
 #include <exception>
 #include <limits>
@@ -179,7 +178,7 @@ int watch(const WatchArguments& arguments) {
              "say it in one place: options alone, without the URL's query, can say it all"}
         );
     }
-    std::signal(SIGPIPE, SIG_IGN);  // a reader that goes is an error of a write
+    ignore_write_signals();
     Watcher watcher(arguments);
     StopSignals signals;
     try {

@@ -14,7 +14,8 @@ inline constexpr std::chrono::seconds patience{20};
 
 class Process {
 public:
-    /// Starts `arguments[0]`. Standard output and standard error are kept.
+    /// Starts `arguments[0]`. Standard output and standard error are kept. No signal is ignored at
+    /// the start, whatever this process ignores.
     explicit Process(const std::vector<std::string>& arguments);
     /// Kills it if it still runs.
     ~Process();
