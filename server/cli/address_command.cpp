@@ -8,6 +8,7 @@
 #include "driver/protocol/error.hpp"
 #include "server/cli/address_wish.hpp"
 #include "server/cli/command.hpp"
+#include "server/cli/print.hpp"
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
@@ -158,15 +159,15 @@ void print_json(const std::string& port, const Outcome& outcome) {
         object["before"] = to_json(outcome.before);
         object["restart_needed"] = outcome.now != outcome.before;
     }
-    fmt::print("{}\n", json::serialize(object));
+    print_json_line(stdout, json::serialize(object));
 }
 
 /// A part of the address; with what it was before if something was set.
 void print_part(const char* name, const Ipv4& before, const Ipv4& now, bool was_set) {
     if (was_set) {
-        fmt::print("{:<8}  {:<15}  {}\n", name, dotted(before), dotted(now));
+        print(stdout, "{:<8}  {:<15}  {}\n", name, dotted(before), dotted(now));
     } else {
-        fmt::print("{:<8}  {}\n", name, dotted(now));
+        print(stdout, "{:<8}  {}\n", name, dotted(now));
     }
 }
 
@@ -182,9 +183,9 @@ std::string next_url(const link::LinkUrl& url, const StaticIp& address) {
 
 void print_text(const link::LinkUrl& url, const Outcome& outcome) {
     const auto& [model, serial, before, wanted, now] = outcome;
-    fmt::print("port      {}\nmodel     {}\nserial    {}\n", url.text, model, serial);
+    print(stdout, "port      {}\nmodel     {}\nserial    {}\n", url.text, model, serial);
     if (wanted) {
-        fmt::print("{:<8}  {:<15}  {}\n", "", "before", "now");
+        print(stdout, "{:<8}  {:<15}  {}\n", "", "before", "now");
     }
     print_part("ip", before.address, now.address, wanted.has_value());
     print_part("mask", before.netmask, now.netmask, wanted.has_value());
@@ -193,9 +194,10 @@ void print_text(const link::LinkUrl& url, const Outcome& outcome) {
         return;
     }
     if (now == before) {
-        fmt::print("\nIt has this address already; nothing was changed.\n");
+        print(stdout, "\nIt has this address already; nothing was changed.\n");
     } else {
-        fmt::print(
+        print(
+            stdout,
             "\nThis takes effect when the lidar starts again: switch it off and on, then open {}\n",
             next_url(url, now)
         );
@@ -205,15 +207,15 @@ void print_text(const link::LinkUrl& url, const Outcome& outcome) {
 int address(const AddressArguments& arguments) {
     const auto url = link::parse_link_url(arguments.port);
     if (!url) {
-        return report(url.error());
+        return report_misuse(url.error());
     }
     const auto wish = parse_address_wish(arguments.texts);
     if (!wish) {
-        return report(wish.error());
+        return report_misuse(wish.error());
     }
     if (wish->is_whole()) {  // nothing of the lidar's is needed to see that it cannot work
         if (const auto problem = address_problem(wish->applied_to({}))) {
-            return report(*problem);
+            return report_misuse(*problem);
         }
     }
     asio::io_context context;

@@ -125,11 +125,6 @@ Result<CaptureOptions, Problem> to_options(const CaptureArguments& arguments) {
     }
     options.path = arguments.output;
     options.existing = arguments.force ? Existing::replace : Existing::refuse;
-    if (!options.path.empty()) {
-        if (auto writable = check_output(options.path, options.existing); !writable) {
-            return writable.error();
-        }
-    }
     return options;
 }
 
@@ -143,7 +138,12 @@ asio::awaitable<void> run(CaptureSession& session, std::optional<Problem>& probl
 int capture(const CaptureArguments& arguments) {
     auto options = to_options(arguments);
     if (!options) {
-        return report(options.error());
+        return report_misuse(options.error());
+    }
+    if (!options->path.empty()) {
+        if (auto writable = check_output(options->path, options->existing); !writable) {
+            return report(writable.error());
+        }
     }
     ignore_write_signals();
     StopSignals signals;

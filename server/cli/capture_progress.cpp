@@ -1,5 +1,7 @@
 #include "server/cli/capture_progress.hpp"
 
+#include "server/cli/print.hpp"
+
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -31,7 +33,7 @@ std::string to_text(const CaptureTotals& totals) {
 }
 
 void CaptureProgress::begin(const capture::CaptureHeader& header, const std::string& path) const {
-    fmt::print(
+    print(
         stderr,
         "sweepcast: capturing {} {} in mode {} {} to {}; Ctrl-C ends it\n",
         header.model,
@@ -50,18 +52,18 @@ void CaptureProgress::update(const CaptureTotals& totals) {
     }
     printed_at_ = now;
     shown_ = true;
-    fmt::print(stderr, "\r\x1b[K{}", to_text(totals));
+    print(stderr, "\r\x1b[K{}", to_text(totals));
 }
 
 void CaptureProgress::clear() {
     if (std::exchange(shown_, false)) {
-        fmt::print(stderr, "\r\x1b[K");
+        print(stderr, "\r\x1b[K");
     }
 }
 
 void CaptureProgress::end(const CaptureTotals& totals, const std::string& path) {
     clear();
-    fmt::print(stderr, "sweepcast: {}, in {}\n", to_text(totals), shown(path));
+    print(stderr, "sweepcast: {}, in {}\n", to_text(totals), shown(path));
 }
 
 }  // namespace sweepcast::cli

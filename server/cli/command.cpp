@@ -1,17 +1,30 @@
 #include "server/cli/command.hpp"
 
-#include <fmt/core.h>
+#include "server/cli/print.hpp"
 
 #include <cstdio>
 
 namespace sweepcast::cli {
 
-int report(const Problem& problem) {
-    fmt::print(stderr, "sweepcast: {}\n", problem.cause);
+namespace {
+
+void tell(const Problem& problem) {
+    print(stderr, "sweepcast: {}\n", problem.cause);
     if (!problem.hint.empty()) {
-        fmt::print(stderr, "  {}\n", problem.hint);
+        print(stderr, "  {}\n", problem.hint);
     }
-    return 1;
+}
+
+}  // namespace
+
+int report(const Problem& problem) {
+    tell(problem);
+    return exit_failed;
+}
+
+int report_misuse(const Problem& problem) {
+    tell(problem);
+    return exit_misused;
 }
 
 }  // namespace sweepcast::cli

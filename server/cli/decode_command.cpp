@@ -6,10 +6,11 @@
 #include "server/cli/answer_type_names.hpp"
 #include "server/cli/byte_source.hpp"
 #include "server/cli/command.hpp"
+#include "server/cli/print.hpp"
 #include "server/cli/sample_printer.hpp"
 #include "server/cli/source_stream.hpp"
-
 #include "server/cli/stop_signals.hpp"
+
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -58,7 +59,7 @@ std::chrono::nanoseconds in_ns(double microseconds) {
 }
 
 /// What is wrong with standard output, if anything.
-Result<void, Problem> print(SamplePrinter& printer, const Decoded& decoded) {
+Result<void, Problem> print_samples(SamplePrinter& printer, const Decoded& decoded) {
     if (const auto failed = printer.print(decoded)) {
         return Problem{failed, "cannot write to standard output: " + failed.message(), ""};
     }
@@ -72,21 +73,32 @@ Problem no_samples(std::string cause, std::string hint) {
         std::move(hint)};
 }
 
-/// Decodes all of `source`, which holds the bytes of one stream.
-Result<void, Problem>
-decode_raw(ByteSource& source, const DecodeArguments& arguments, SamplePrinter& printer) {
-    if (arguments.type.empty()) {
+/// What is wrong with --type for such a file, if anything.
+std::optional<Problem> type_problem(const DecodeArguments& arguments, bool is_capture) {
+    if (is_capture && !arguments.type.empty()) {
+        return Problem{
+            make_error_code(boost::system::errc::invalid_argument),
+            arguments.path + " is a capture, which tells its answer types itself",
+            "leave --type out"};
+    }
+    if (!is_capture && arguments.type.empty()) {
         return Problem{
             make_error_code(boost::system::errc::invalid_argument),
             arguments.path + " is no capture, so its answer type must be told",
             "give --type, one of " + known_answer_types()};
     }
-    const auto type = parse_answer_type(arguments.type);
-    if (!type) {
-        return type.error();
-    }
+    return std::nullopt;
+}
+
+/// Decodes all of `source`, which holds the bytes of one stream.
+Result<void, Problem> decode_raw(
+    ByteSource& source,
+    protocol::AnswerType type,
+    const DecodeArguments& arguments,
+    SamplePrinter& printer
+) {
     const auto sample_duration = in_ns(arguments.sample_us.value_or(0));
-    auto decoder = protocol::Decoder::create(*type, {.sample_duration = sample_duration});
+    auto decoder = protocol::Decoder::create(type, {.sample_duration = sample_duration});
     Decoded decoded;
     std::uint64_t bytes = 0;
     for (bool ended = false; !ended;) {
@@ -96,7 +108,7 @@ decode_raw(ByteSource& source, const DecodeArguments& arguments, SamplePrinter& 
         }
         decoded.clear();
         decoder->push(*block, {}, decoded);
-        if (auto printed = print(printer, decoded); !printed) {
+        if (auto printed = print_samples(printer, decoded); !printed) {
             return printed;
         }
         ended = block->empty();
@@ -105,7 +117,7 @@ decode_raw(ByteSource& source, const DecodeArguments& arguments, SamplePrinter& 
     printer.summarize();
     if (printer.samples() == 0) {
         return no_samples(
-            fmt::format("no samples of type {} in {} bytes", shown_answer_type(*type), bytes),
+            fmt::format("no samples of type {} in {} bytes", shown_answer_type(type), bytes),
             "is it another type? Known are " + known_answer_types()
         );
     }
@@ -113,7 +125,7 @@ decode_raw(ByteSource& source, const DecodeArguments& arguments, SamplePrinter& 
 }
 
 void introduce(const capture::CaptureHeader& header) {
-    fmt::print(
+    print(
         stderr,
         "sweepcast: {} {}, firmware {}, mode {}, captured at {} by {}\n",
         header.model,
@@ -152,7 +164,7 @@ Result<CaptureReader::End, Problem> decode_streams(
         }
         decoded.clear();
         decoder->push(block->bytes, {}, decoded);
-        if (auto printed = print(printer, decoded); !printed) {
+        if (auto printed = print_samples(printer, decoded); !printed) {
             return printed.error();
         }
     }
@@ -161,12 +173,6 @@ Result<CaptureReader::End, Problem> decode_streams(
 
 Result<void, Problem>
 decode_capture(ByteSource& source, const DecodeArguments& arguments, SamplePrinter& printer) {
-    if (!arguments.type.empty()) {
-        return Problem{
-            make_error_code(boost::system::errc::invalid_argument),
-            arguments.path + " is a capture, which tells its answer types itself",
-            "leave --type out"};
-    }
     SourceStream in(source);
     auto reader = CaptureReader::open(in);
     if (!reader) {
@@ -190,10 +196,7 @@ decode_capture(ByteSource& source, const DecodeArguments& arguments, SamplePrint
         );
     }
     if (*end == CaptureReader::End::cut_short) {
-        fmt::print(
-            stderr,
-            "sweepcast: the capture ends inside a record; all before that was decoded\n"
-        );
+        print(stderr, "sweepcast: the capture ends inside a record; all before that was decoded\n");
     }
     if (printer.samples() == 0) {
         return no_samples(
@@ -205,6 +208,11 @@ decode_capture(ByteSource& source, const DecodeArguments& arguments, SamplePrint
 }
 
 int decode(const DecodeArguments& arguments) {
+    const auto type =
+        arguments.type.empty() ? protocol::AnswerType::normal : parse_answer_type(arguments.type);
+    if (!type) {
+        return report_misuse(type.error());
+    }
     auto opened = open_byte_source(arguments.path);
     if (!opened) {
         return report(opened.error());
@@ -215,9 +223,12 @@ int decode(const DecodeArguments& arguments) {
     if (!is_capture) {
         return report(is_capture.error());
     }
+    if (const auto problem = type_problem(arguments, *is_capture)) {
+        return report_misuse(*problem);
+    }
     SamplePrinter printer(arguments.units);
     const auto decoded = *is_capture ? decode_capture(source, arguments, printer)
-                                     : decode_raw(source, arguments, printer);
+                                     : decode_raw(source, *type, arguments, printer);
     if (!decoded && decoded.error().code == boost::system::errc::broken_pipe) {
         return 1;  // the reader has had enough, as `| head`: nothing to tell anyone
     }

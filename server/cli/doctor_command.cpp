@@ -7,6 +7,7 @@
 #include "server/cli/command.hpp"
 #include "server/cli/doctor_output.hpp"
 #include "server/cli/lidar_choice.hpp"
+#include "server/cli/print.hpp"
 #include "server/cli/stop_signals.hpp"
 
 #include <CLI/App.hpp>
@@ -28,8 +29,6 @@ using device::Diagnosis;
 
 namespace {
 
-constexpr int exit_stopped = 130;  // as a shell has it for SIGINT
-
 struct DoctorArguments {
     std::string url;
     std::vector<std::string> discover;
@@ -45,7 +44,7 @@ public:
         if (json_) {
             return;
         }
-        fmt::print("{}", std::exchange(first_, false) ? "" : "\n");
+        write_text(stdout, std::exchange(first_, false) ? "" : "\n");
         text_.begin(port);
     }
     [[nodiscard]] diagnosis::OnCheck on_check() {
@@ -60,8 +59,7 @@ public:
         }
         v1::Diagnosis message;
         api::to_message(diagnosis, message);
-        fmt::print("{}", api::to_json_line(message));
-        std::fflush(stdout);
+        print_json_line(stdout, api::to_json_line(message));
     }
     [[nodiscard]] bool failed() const { return failed_; }
 
@@ -85,7 +83,7 @@ std::vector<link::LinkUrl> ports_to_examine(const std::vector<std::string>& patt
     }
     const auto plan = link::plan_discovery(there);
     for (const auto& [path, why] : plan.skipped) {
-        fmt::print(stderr, "not examining {}: {}\n", path, why);
+        print(stderr, "not examining {}: {}\n", path, why);
     }
     std::vector<link::LinkUrl> urls;
     for (const auto& path : plan.look_at) {
@@ -123,7 +121,7 @@ int doctor(const DoctorArguments& arguments) {
     } else {
         auto url = link::parse_link_url(arguments.url);
         if (!url) {
-            return report(url.error());
+            return report_misuse(url.error());
         }
         urls.push_back(std::move(*url));
     }
@@ -135,7 +133,7 @@ int doctor(const DoctorArguments& arguments) {
     }
     StopSignals signals;
     if (!signals.run(examine_all(signals.executor(), std::move(urls), printer))) {
-        fmt::print(stderr, "stopped: no scan goes on, the motor is off\n");
+        print(stderr, "stopped: no scan goes on, the motor is off\n");
         return exit_stopped;
     }
     return printer.failed() ? 1 : 0;

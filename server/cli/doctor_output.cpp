@@ -40,46 +40,43 @@ Mark mark_of(Verdict verdict) {
 
 void print_list(std::FILE* out, const std::vector<std::string>& lines) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
-        fmt::print(out, "  {}. {}\n", i + 1, lines[i]);
+        print(out, "  {}. {}\n", i + 1, lines[i]);
     }
 }
 
 }  // namespace
 
-std::string DoctorText::painted(const std::string& text, const char* colour) const {
-    return colour_ ? fmt::format("\x1b[{}m{}\x1b[0m", colour, text) : text;
+Trusted DoctorText::painted(const std::string& text, const char* colour) const {
+    const auto shown = protocol::printable(text);
+    return {colour_ ? fmt::format("\x1b[{}m{}\x1b[0m", colour, shown) : shown};
 }
 
 void DoctorText::begin(const std::string& port) {
-    fmt::print(out_, "{}\n", painted("Examining " + port, bold));
-    std::fflush(out_);
+    print(out_, "{}\n", painted("Examining " + port, bold));
 }
 
 void DoctorText::check(const device::Check& check) {
     const auto mark = mark_of(check.verdict);
     const auto text = check.finding.empty() ? check.title : check.title + ": " + check.finding;
-    fmt::print(out_, "  {}  {}\n", painted(mark.text, mark.colour), text);
-    std::fflush(out_);
+    print(out_, "  {}  {}\n", painted(mark.text, mark.colour), text);
 }
 
 void DoctorText::conclude(const device::Diagnosis& diagnosis) {
     if (diagnosis.cause.empty()) {
-        fmt::print(out_, "\n{}\n", painted("All is well.", bold));
-        std::fflush(out_);
+        print(out_, "\n{}\n", painted("All is well.", bold));
         return;
     }
     const bool failed = diagnosis.verdict() == Verdict::failed;
     const auto* heading = failed ? "What is wrong:" : "It works, but:";
-    fmt::print(out_, "\n{} {}\n", painted(heading, bold), diagnosis.cause);
+    print(out_, "\n{} {}\n", painted(heading, bold), diagnosis.cause);
     if (!diagnosis.likely_causes.empty()) {
-        fmt::print(out_, "\n{}\n", painted("Why, most likely:", bold));
+        print(out_, "\n{}\n", painted("Why, most likely:", bold));
         print_list(out_, diagnosis.likely_causes);
     }
     if (!diagnosis.next_steps.empty()) {
-        fmt::print(out_, "\n{}\n", painted("What to do:", bold));
+        print(out_, "\n{}\n", painted("What to do:", bold));
         print_list(out_, diagnosis.next_steps);
     }
-    std::fflush(out_);
 }
 
 bool wants_colour() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "driver/device/diagnosis.hpp"
+#include "server/cli/print.hpp"
 
 #include <cstdio>
 #include <string>
@@ -22,7 +23,7 @@ public:
     void conclude(const device::Diagnosis& diagnosis);
 
 private:
-    [[nodiscard]] std::string painted(const std::string& text, const char* colour) const;
+    [[nodiscard]] Trusted painted(const std::string& text, const char* colour) const;
 
     std::FILE* out_;
     bool colour_;

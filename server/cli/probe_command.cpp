@@ -3,6 +3,7 @@
 #include "driver/protocol/model.hpp"
 #include "driver/protocol/reply.hpp"
 #include "server/cli/command.hpp"
+#include "server/cli/print.hpp"
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
@@ -33,22 +34,28 @@ const char* text(protocol::HealthStatus status) {
     return "unknown";
 }
 
-void print(const std::string& port, const device::Probed& probed) {
+void print_probed(const std::string& port, const device::Probed& probed) {
     const auto& identity = probed.identity;
     const auto& info = identity.info;
-    fmt::print("port      {}\n", port);
-    fmt::print("baud      {}\n", probed.baud > 0 ? std::to_string(probed.baud) : "none, a network");
-    fmt::print("model     {}\n", device::shown_name(identity));
-    fmt::print("serial    {}\n", protocol::serial_text(info.serial));
-    fmt::print("firmware  {}.{:02}\n", info.firmware_major, info.firmware_minor);
-    fmt::print("hardware  {}\n", info.hardware);
-    fmt::print("health    {}", text(identity.health.status));
-    fmt::print(
+    print(stdout, "port      {}\n", port);
+    print(
+        stdout,
+        "baud      {}\n",
+        probed.baud > 0 ? std::to_string(probed.baud) : "none, a network"
+    );
+    print(stdout, "model     {}\n", device::shown_name(identity));
+    print(stdout, "serial    {}\n", protocol::serial_text(info.serial));
+    print(stdout, "firmware  {}.{:02}\n", info.firmware_major, info.firmware_minor);
+    print(stdout, "hardware  {}\n", info.hardware);
+    print(stdout, "health    {}", text(identity.health.status));
+    print(
+        stdout,
         "{}\n",
         identity.health.code != 0 ? fmt::format(", code {:#06x}", identity.health.code) : ""
     );
     for (const auto& mode : identity.modes) {
-        fmt::print(
+        print(
+            stdout,
             "mode      {}: {:.0f} samples/s{}{}\n",
             mode.name,
             mode.samples_per_second(),
@@ -61,7 +68,7 @@ void print(const std::string& port, const device::Probed& probed) {
 int probe(const std::string& port) {
     auto url = link::parse_link_url(port);
     if (!url) {
-        return report(url.error());
+        return report_misuse(url.error());
     }
     asio::io_context context;
     auto asked = asio::co_spawn(
@@ -74,7 +81,7 @@ int probe(const std::string& port) {
     if (!probed) {
         return report(probed.error());
     }
-    print(port, *probed);
+    print_probed(port, *probed);
     return 0;
 }
 

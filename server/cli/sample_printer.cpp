@@ -1,5 +1,7 @@
 #include "server/cli/sample_printer.hpp"
 
+#include "server/cli/print.hpp"
+
 #include <boost/system/errc.hpp>
 #include <fmt/format.h>
 
@@ -32,7 +34,7 @@ error_code SamplePrinter::print(const protocol::Decoded& decoded) {
 }
 
 void SamplePrinter::summarize() const {
-    fmt::print(
+    cli::print(
         stderr,
         "sweepcast: {} samples; {} checksum errors, {} bytes skipped, {} packets lost\n",
         samples_,

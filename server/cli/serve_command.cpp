@@ -1,8 +1,10 @@
 // `sweepcast serve`: the main job. Reads the options, finds the lidars, runs the gateway until told
 // to stop.
+#include "driver/virtual/error.hpp"
 #include "server/cli/command.hpp"
 #include "server/cli/descriptors.hpp"
 #include "server/cli/lidar_choice.hpp"
+#include "server/cli/print.hpp"
 #include "server/cli/stop_signals.hpp"
 #include "server/gateway/gateway.hpp"
 #include "server/log/log.hpp"
@@ -12,6 +14,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/system/errc.hpp>
 #include <fmt/format.h>
 #include <google/protobuf/stubs/logging.h>
 
@@ -83,18 +86,24 @@ void warn_if_open_to_others(const asio::ip::tcp::endpoint& http, spdlog::logger&
     }
 }
 
+/// Whether the gateway did not start because of a value on the command line.
+bool is_misuse(const Problem& problem) {
+    return problem.code == boost::system::errc::invalid_argument ||
+           problem.code == virtual_lidar::errc::invalid_option;
+}
+
 void print_addresses(const gateway::Gateway& gateway) {
-    fmt::print(
+    print(
+        stdout,
         "page: http://{}/\ntcp: tcp://{}\n",
         net::to_text(net::callable(gateway.http_endpoint())),
         net::to_text(net::callable(gateway.tcp_endpoint()))
     );
-    std::fflush(stdout);
 }
 
 int serve(const ServeArguments& arguments) {
     if (!log::set_level(arguments.log_level)) {
-        return report(
+        return report_misuse(
             {{},
              fmt::format("no log level \"{}\"", arguments.log_level),
              "levels: debug, info, warning, error"}
@@ -104,7 +113,7 @@ int serve(const ServeArguments& arguments) {
     google::protobuf::SetLogHandler(nullptr);  // it would let any client write to our log
     auto options = to_options(arguments);
     if (!options) {
-        return report(options.error());
+        return report_misuse(options.error());
     }
     const auto log = log::make_logger("gateway");
     StopSignals signals;
@@ -115,7 +124,7 @@ int serve(const ServeArguments& arguments) {
         log
     );
     if (!choice) {
-        return report(choice.error());
+        return report_misuse(choice.error());
     }
     if (choice->find &&
         !signals.run(find_lidars(signals.executor(), log, *options->memory, *choice))) {
@@ -127,7 +136,8 @@ int serve(const ServeArguments& arguments) {
     options->patterns = std::move(choice->patterns);
     auto gateway = gateway::Gateway::start(std::move(*options), log::make_logger);
     if (!gateway) {
-        return report(gateway.error());
+        return is_misuse(gateway.error()) ? report_misuse(gateway.error())
+                                          : report(gateway.error());
     }
     warn_if_open_to_others((*gateway)->http_endpoint(), *log);
     print_addresses(**gateway);

@@ -8,6 +8,7 @@
 #include "driver/virtual/persona.hpp"
 #include "driver/virtual/virtual_lidar.hpp"
 #include "server/cli/command.hpp"
+#include "server/cli/print.hpp"
 #include "server/cli/stop_signals.hpp"
 #include "server/log/log.hpp"
 
@@ -16,7 +17,6 @@
 #include <CLI/Formatter.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <fmt/core.h>
 
 #include <chrono>
 #include <csignal>
@@ -167,7 +167,7 @@ void plug_at_signals(VirtualLidar& lidar, asio::signal_set& signals) {
 // that it does not obey.
 int send(const std::string& control, const std::vector<std::string>& commands) {
     if (control.empty()) {
-        return report(
+        return report_misuse(
             {make_error_code(virtual_lidar::errc::invalid_option),
              "which virtual lidar is the command for?",
              "give the path of its control socket: --control PATH"}
@@ -175,7 +175,7 @@ int send(const std::string& control, const std::vector<std::string>& commands) {
     }
     for (const auto& command : commands) {
         if (command.find_first_of("\r\n") != std::string::npos) {
-            return report(
+            return report_misuse(
                 {make_error_code(virtual_lidar::errc::invalid_option),
                  "a command is one line",
                  "give more of them with --send each"}
@@ -188,16 +188,16 @@ int send(const std::string& control, const std::vector<std::string>& commands) {
         constexpr std::string_view error = "error: ";
         if (!answer->starts_with("ok")) {
             const bool marked = answer->starts_with(error);
-            fmt::print(stderr, "sweepcast: {}\n", answer->substr(marked ? error.size() : 0));
-            return 1;
+            print(stderr, "sweepcast: {}\n", answer->substr(marked ? error.size() : 0));
+            return exit_failed;
         }
-        fmt::print("{}\n", *answer);
+        print(stdout, "{}\n", *answer);
     }
     return 0;
 }
 
-    ignore_write_signals();
 int run(const VirtualLidarOptions& options) {
+    ignore_write_signals();
     asio::io_context context(1);
     // Before the port is there: a signal that comes early must not leave a link behind.
     asio::signal_set signals(context);
@@ -205,10 +205,10 @@ int run(const VirtualLidarOptions& options) {
     asio::signal_set plug_signals(context, SIGUSR1);
     auto lidar = VirtualLidar::create(context.get_executor(), options, log::make_logger("virtual"));
     if (!lidar) {
-        return report(lidar.error());
+        const bool misused = lidar.error().code == virtual_lidar::errc::invalid_option;
+        return misused ? report_misuse(lidar.error()) : report(lidar.error());
     }
-    fmt::print("{}\n", (*lidar)->port());
-    std::fflush(stdout);  // whoever reads it from a pipe waits for it
+    print(stdout, "{}\n", (*lidar)->port());  // at once: a script may wait for it
 
     std::exception_ptr failure;
     async::TaskGroup tasks(context.get_executor(), [&](std::exception_ptr thrown) {
@@ -302,7 +302,7 @@ void add_virtual_command(CLI::App& app, int& exit_code) {
     );
     command->callback([options, list_models, commands, &exit_code] {
         if (*list_models || options->model == "list") {
-            fmt::print("{}", table_of_models());
+            write_text(stdout, table_of_models());
             exit_code = 0;
         } else if (!commands->empty()) {
             exit_code = send(options->control, *commands);

@@ -169,10 +169,10 @@ receive_all(client::StreamUrl url, const WatchArguments& arguments, Watcher& wat
 int watch(const WatchArguments& arguments) {
     auto url = client::parse_stream_url(arguments.url);
     if (!url) {
-        return report(url.error());
+        return report_misuse(url.error());
     }
     if (url->has_query() && arguments.wish_option) {
-        return report(
+        return report_misuse(
             {{},
              fmt::format("what to get is in the URL and in {}", *arguments.wish_option),
              "say it in one place: options alone, without the URL's query, can say it all"}

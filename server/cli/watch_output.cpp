@@ -3,6 +3,7 @@
 #include "driver/device/captured_sweep.hpp"
 #include "server/api/json.hpp"
 #include "server/api/scan_export.hpp"
+#include "server/cli/print.hpp"
 #include "sweepcast/v1/api.pb.h"
 
 #include <fmt/format.h>
@@ -50,7 +51,7 @@ public:
     void on_end() override {}
 
 private:
-    static void note(const std::string& text) { fmt::print(stderr, "sweepcast: {}\n", text); }
+    static void note(const std::string& text) { print(stderr, "sweepcast: {}\n", text); }
 
     bool lost_{};
 };
@@ -65,7 +66,7 @@ public:
             text_ += sectors_ ? "lidar,sequence,sector," : "lidar,sequence,";
             text_ += "unix_ns,angle_deg,distance_mm,quality,flag\n";
         }
-        auto which = fmt::format("{},{}", scan.lidar, scan.sequence);
+        auto which = fmt::format("{},{}", csv_field(scan.lidar), scan.sequence);
         which += sectors_ ? fmt::format(",{}", scan.sector) : "";
         for (const auto& sample : scan.scan.sweep.samples) {
             const auto unix_time = scan.scan.unix_time(sample);
@@ -125,7 +126,9 @@ public:
     void on_scan(const client::Scan& scan) override {
         v1::LatestScan message;
         to_message(scan, message);
-        write(api::to_json_line(message));
+        auto line = api::to_json_line(message);
+        line.pop_back();
+        write(format_printable("{}\n", line));
     }
 };
 
@@ -240,7 +243,7 @@ private:
         std::size_t notes = 0;
         for (const auto* note : {&left_out_, &note_}) {
             if (!note->empty()) {
-                text += *note + end;
+                text += protocol::printable(*note) + end;
                 ++notes;
             }
         }
@@ -251,7 +254,7 @@ private:
     }
 
     static std::string line(const Row& row) {
-        auto text = fmt::format(
+        auto text = format_printable(
             "{:<12} {:<9} {:<15} {:<11} {:>6.0f} {:>7} {:>7} {:>9} {:>7}",
             row.lidar.id(),
             row.lidar.device().model(),
@@ -263,7 +266,8 @@ private:
             row.sequence,
             row.missed
         );
-        return row.lidar.cause().empty() ? text : text + "  " + row.lidar.cause();
+        return row.lidar.cause().empty() ? text
+                                         : text + "  " + protocol::printable(row.lidar.cause());
     }
 
     const bool terminal_ = isatty(STDOUT_FILENO) != 0;

@@ -103,6 +103,66 @@ INSTANTIATE_TEST_SUITE_P(
     )
 );
 
+/// Command lines that cannot be obeyed whatever is plugged in, and what the error says.
+class MisuseTest : public testing::TestWithParam<Mistake> {};
+
+TEST_P(MisuseTest, ExitsWithTwoAndSaysWhatIsWrongOnStandardError) {
+    const auto outcome = call(GetParam().arguments);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.log, HasSubstr(GetParam().says));
+    EXPECT_EQ(outcome.output, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Calls,
+    MisuseTest,
+    testing::Values(
+        Mistake{{}, "serve, watch, virtual, probe, doctor, address, capture, decode"},
+        Mistake{{"dance"}, "there is no command \"dance\""},
+        Mistake{{"dance", "--loudly"}, "there is no command \"dance\""},
+        Mistake{{"\x1b[2J"}, "there is no command \"\\u001b[2J\""},
+        Mistake{{"--loudly"}, "--loudly"},
+        Mistake{{"serve", "--loudly"}, "--loudly"},
+        Mistake{{"serve", "--threads", "0"}, "--threads"},
+        Mistake{{"serve", "--threads", "many"}, "--threads"},
+        Mistake{{"serve", "--http", "nowhere"}, "nowhere"},
+        Mistake{{"serve", "--tcp", "nowhere"}, "nowhere"},
+        Mistake{{"serve", "--log-level", "loud"}, "loud"},
+        Mistake{{"serve", "--lidar", "usb://1"}, "usb://1"},
+        Mistake{{"serve", "--lidar", "virtual:z9"}, "z9"},
+        Mistake{{"serve", "--lidar", "virtual:a1m8?fault=nonsense"}, "nonsense"},
+        Mistake{{"serve", "--lidar", "/dev/x?name=A", "--lidar", "/dev/y?name=A"}, "A"},
+        Mistake{{"watch", "--loudly"}, "--loudly"},
+        Mistake{{"watch", "http://robot"}, "http://robot"},
+        Mistake{{"watch", "--csv", "--json"}, "--csv"},
+        Mistake{{"watch", "--keep", "90"}, "FROM-TO"},
+        Mistake{{"watch", "tcp://127.0.0.1:1?lidar=X"}, "--lidar"},
+        Mistake{{"watch", "ws://127.0.0.1:1?kind=sweep", "--kind", "sector"}, "one place"},
+        Mistake{{"virtual", "--loudly"}, "--loudly"},
+        Mistake{{"virtual", "--model", "z9"}, "z9"},
+        Mistake{{"virtual", "--fault", "noise"}, "noise=RATE"},
+        Mistake{{"virtual", "--schedule", "3 unplug"}, "3 unplug"},
+        Mistake{{"virtual", "--send", "unplug"}, "--control PATH"},
+        Mistake{{"probe"}, "port"},
+        Mistake{{"probe", "usb://1"}, "usb://1"},
+        Mistake{{"doctor", "--discover", "x", "y"}, "--discover"},
+        Mistake{{"doctor", "usb://1"}, "usb://1"},
+        Mistake{{"address"}, "port"},
+        Mistake{{"address", "usb://1"}, "usb://1"},
+        Mistake{{"address", "udp://127.0.0.1:1", "--ip", "10.0.0.256"}, "10.0.0.256"},
+        Mistake{{"capture", "usb://1"}, "usb://1"},
+        Mistake{{"capture", "/nonexistent", "--seconds", "0"}, "--seconds"},
+        Mistake{{"capture", "udp://127.0.0.1:1", "--baud", "115200"}, "serial ports"},
+        Mistake{{"decode", "--loudly"}, "--loudly"},
+        Mistake{{"decode", "--type", "x", "/etc/passwd"}, "0x84 (ultra)"},
+        Mistake{{"decode", "/etc/passwd"}, "--type"}
+    )
+);
+
+TEST(CommandLine, HelpTellsTheExitCodes) {
+    EXPECT_THAT(call({"--help"}).output, HasSubstr("2    the command line is wrong"));
+}
+
 TEST(CommandLine, VirtualListsItsModels) {
     for (const auto& arguments :
          {std::vector<std::string>{"virtual", "--list-models"}, {"virtual", "--model", "list"}}) {
