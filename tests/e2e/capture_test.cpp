@@ -502,7 +502,7 @@ TEST(CaptureTest, DecodeTellsHowACaptureEnds) {
     EXPECT_EQ(beheaded.exit_code, 1);
     EXPECT_THAT(beheaded.log, HasSubstr("header of the capture is cut short"));
     const auto typed = run({"decode", "--type", "82", file});
-    EXPECT_EQ(typed.exit_code, 1);
+    EXPECT_EQ(typed.exit_code, 2);
     EXPECT_THAT(typed.log, HasSubstr("leave --type out"));
     const auto piped = shell("cat " + file + " | " + program() + " decode --units");
     EXPECT_EQ(piped.exit_code, 0);

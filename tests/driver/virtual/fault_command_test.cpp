@@ -73,7 +73,7 @@ TEST(ParseFaultCommand, SaysWhatIsWrongAndWhatCanBeWritten) {
              Mistake{"loss=0", "loss=0", "1 to 1000000"},
              Mistake{"loss=1000001", "loss=", "1 to 1000000"},
              Mistake{"protection-stop=", "protection-stop=", "0x8001"},
-             Mistake{std::string("\x1b[31m\n"), "\\u001b[31m\\n", "unplug"},
+             Mistake{std::string("\x1b[31m\n"), "\\u001b[31m", "unplug"},
              Mistake{std::string(2000, 'x'), "xxx...", "1024"},
          }) {
         const auto parsed = parse_fault_command(text);

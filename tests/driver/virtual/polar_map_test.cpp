@@ -126,7 +126,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"out_of_double", header + "1,1e999\n", "is not a number"},
         BadFile{"hex", header + "0x10,1\n", "is not a number"},
         BadFile{"empty_field", header + "1,\n", "the distance \"\" is not a number"},
-        BadFile{"control_bytes", header + "\x1b[2J,1\n", "the angle \"\\u001b[2J\" is not a number"},
+        BadFile{
+            "control_bytes",
+            header + "\x1b[2J,1\n",
+            "the angle \"\\u001b[2J\" is not a number"},
         BadFile{"zeros", std::string(100, '\0'), "line 1: expected the header"},
         BadFile{"long_line", header + std::string(5000, 'x') + ",1\n", "xxx...\" is not a number"}
     ),
