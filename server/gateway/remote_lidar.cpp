@@ -160,11 +160,16 @@ void RemoteLidar::take(const v1::StreamError& refusal) {
     if (refusal.code() == "lidar_not_found") {
         return;  // choose() says so, and waits for it
     }
+    if (!refusals_.count(std::chrono::steady_clock::now())) {
+        return;  // the state tells of the first of this second
+    }
     fail({{}, refusal.message(), refusal.hint()});
 }
 
 void RemoteLidar::take(const v1::StreamStats& stats) {
-    log_->warn("too slow for {}: {} frames lost so far", place_.url, stats.frames_dropped());
+    if (losses_.count(std::chrono::steady_clock::now())) {
+        log_->warn("too slow for {}: {} frames lost so far", place_.url, stats.frames_dropped());
+    }
 }
 
 void RemoteLidar::take(const client::LeftOut& left_out) {

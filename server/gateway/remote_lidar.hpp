@@ -10,6 +10,7 @@
 #include "server/gateway/remote_clock.hpp"
 #include "server/hub/hub.hpp"
 #include "server/hub/lidar_frames.hpp"
+#include "server/net/once_per_second.hpp"
 
 #include <spdlog/logger.h>
 
@@ -95,6 +96,8 @@ private:
     std::map<std::uint32_t, v1::Lidar> there_;
     std::optional<std::uint32_t> chosen_;    ///< which of them it is
     std::optional<v1::Subscribe> due_wish_;  ///< to be sent
+    net::OncePerSecond refusals_;            ///< so that the other gateway cannot fill the log
+    net::OncePerSecond losses_;
     RemoteClock clock_;
     std::chrono::microseconds offset_{};  ///< of the sweep under way
     client::SweepJoiner joiner_;

@@ -1,7 +1,12 @@
 // One gateway's lidar published by another.
 #include "server/client/sweep_joiner.hpp"
+#include "server/frame/wire_message.hpp"
 #include "tests/e2e/gateway.hpp"
 
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/write.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,6 +17,8 @@
 #include <string>
 #include <vector>
 
+namespace asio = boost::asio;
+using asio::ip::tcp;
 using testing::EndsWith;
 using testing::HasSubstr;
 
@@ -214,6 +221,52 @@ TEST(RemoteLidar, InALoopOfGatewaysFailsAndSaysSo) {
         return message.lidar().cause().find("a loop of them") != std::string::npos;
     });
     EXPECT_EQ(http(first.http, "GET", "/healthz").status, 200);
+}
+
+void say(tcp::socket& socket, const v1::ServerMessage& message) {
+    const frame::WireMessage wire(message);
+    const auto bytes = wire.framed(frame::Framing::delimited);
+    for (const auto part : {bytes.head, bytes.tail}) {
+        asio::write(socket, asio::buffer(part.data(), part.size()));
+    }
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+    std::size_t found = 0;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+        ++found;
+    }
+    return found;
+}
+
+TEST(RemoteLidar, OfAHostileGatewayNeitherControlsNorFloodsTheLog) {
+    asio::io_context context;
+    tcp::acceptor acceptor(context, {asio::ip::make_address("127.0.0.1"), 0});
+    const auto port = std::to_string(acceptor.local_endpoint().port());
+    GatewayProcess here({"--lidar", remote("127.0.0.1:" + port)});
+    {
+        auto hostile = acceptor.accept();
+        v1::ServerMessage greeting;
+        greeting.mutable_hello()->set_protocol_version(1);
+        greeting.mutable_hello()->set_server("\x1b[2J\nforged line");
+        say(hostile, greeting);
+        for (std::uint32_t i = 0; i < 1000; ++i) {
+            v1::ServerMessage stats;
+            stats.mutable_stats()->set_frames_dropped(i);
+            say(hostile, stats);
+            v1::ServerMessage refusal;
+            refusal.mutable_error()->set_message("refusal " + std::to_string(i));
+            say(hostile, refusal);
+        }
+    }
+    acceptor.accept();  // it connects again: all of it has been read
+    here.process.signal(SIGTERM);
+    EXPECT_EQ(here.process.wait(), 0);
+    const auto log = here.process.rest_of_log();
+    EXPECT_THAT(log, HasSubstr("connected to \\u001b[2J\\nforged line\n"));
+    constexpr std::size_t few = 100;  // one a second, however slow this machine is
+    EXPECT_LT(count(log, "too slow for"), few);
+    EXPECT_LT(count(log, "refusal "), few);
 }
 
 }  // namespace

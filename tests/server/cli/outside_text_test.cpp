@@ -18,9 +18,9 @@ using testing::Not;
 
 /// Clears the screen, begins a line, and sets the terminal's title.
 const std::string evil = "\x1b[2J\nforged\x9b\x07";
-const std::string shown = "\\u001b[2J\\nforged\\x9b\\u0007";
+const std::string shown = R"(\u001b[2J\nforged\x9b\u0007)";
 const std::string evil_utf8 = "\x1b[2J\nforged\xc2\x9b\x07";
-const std::string shown_utf8 = "\\u001b[2J\\nforged\\u009b\\u0007";
+const std::string shown_utf8 = R"(\u001b[2J\nforged\u009b\u0007)";
 
 client::Connected greeting() {
     client::Connected connected;
@@ -79,13 +79,12 @@ TEST(OutsideText, InCsvIsOneField) {
 
 TEST(OutsideText, InJsonIsPrintableAndMeansTheSame) {
     auto sweep = scan();
-    sweep.lidar =
-        "\xe2\x81\xa6"
-        "A";  // an isolate, which protobuf's JSON leaves as it is
+    // Isolates, which the JSON of protobuf leaves as they are.
+    sweep.lidar = "\xe2\x81\xa6 A\xe2\x81\xa9";
     const auto output = make_json_output();
     testing::internal::CaptureStdout();
     output->on_scan(sweep);
-    EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("\"\\u2066A\""));
+    EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr(R"("\u2066 A\u2069")"));
 }
 
 TEST(OutsideText, InNotesIsPrintable) {
