@@ -59,7 +59,7 @@ protected:
         const auto control = open();
         tasks_.spawn(control->run());
         tasks_.spawn(then_cancel(std::move(client)));
-        context_.run_for(std::chrono::seconds(10));
+        context_.run_for(std::chrono::seconds(60));
         ASSERT_EQ(tasks_.size(), 0U) << "did not end in time";
     }
 

@@ -1,10 +1,10 @@
-// A capture played on a real pseudo terminal: bit for bit, in its time, again and again.
+// A capture played on a real pseudo terminal: bit for bit, again and again. playback_test.cpp
+// checks the times, with a clock of its own.
 #include "driver/capture/capture_writer.hpp"
 #include "driver/link/termios2.hpp"
 #include "tests/driver/virtual/hex.hpp"
 #include "tests/driver/virtual/virtual_lidar_fixture.hpp"
 
-#include <chrono>
 #include <fstream>
 
 namespace sweepcast::virtual_lidar {
@@ -13,7 +13,6 @@ namespace {
 namespace asio = boost::asio;
 using namespace std::chrono_literals;
 using capture::Direction;
-using Clock = std::chrono::steady_clock;
 
 constexpr std::uint32_t baud = 460'800;
 constexpr int blocks = 40;
@@ -63,7 +62,7 @@ protected:
     Bytes captured_;
 };
 
-TEST_F(PlaybackPortTest, AHostGetsTheBytesOfTheCaptureAndTheirTimes) {
+TEST_F(PlaybackPortTest, AHostGetsTheBytesOfTheCapture) {
     ASSERT_NO_FATAL_FAILURE(create_player());
     run_with([this]() -> asio::awaitable<void> {
         auto port = open_host();
@@ -73,13 +72,8 @@ TEST_F(PlaybackPortTest, AHostGetsTheBytesOfTheCaptureAndTheirTimes) {
         EXPECT_EQ(info[8], 2) << "firmware";
         EXPECT_EQ(info[10], 18) << "hardware";
         co_await write(port, Command::scan);
-        const auto descriptor = co_await read(port, descriptor_.size());
-        const auto began = Clock::now();
-        EXPECT_EQ(descriptor, descriptor_);
-        const auto played = co_await read(port, captured_.size());
-        // What is late is the machine's; early would be the player's.
-        EXPECT_GE(Clock::now() - began, spin_up + (blocks - 1) * block_time - 10ms);
-        EXPECT_EQ(played, captured_);
+        EXPECT_EQ(co_await read(port, descriptor_.size()), descriptor_);
+        EXPECT_EQ(co_await read(port, captured_.size()), captured_);
         co_await logged("has been played to its end");
     });
 }

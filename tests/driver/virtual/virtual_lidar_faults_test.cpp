@@ -279,9 +279,15 @@ TEST_F(VirtualLidarFaults, OnTheNetworkItDoesNotSpinWhenDescriptorsRunOut) {
     const rlimit none{.rlim_cur = 3, .rlim_max = before.rlim_max};
     ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
     tasks_.spawn(lidar_->run());
-    const auto steps = context_.run_for(250ms);
+    // One that spins is always ready for another step: the connection still waits.
+    constexpr int many = 10'000;
+    int steps = 0;
+    while (steps < many && context_.poll_one() > 0) {
+        ++steps;
+    }
     ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
-    EXPECT_LT(steps, 60U);
+    EXPECT_GT(steps, 0);
+    EXPECT_LT(steps, many);
     run_with_rest([&]() -> asio::awaitable<void> {
         co_await write(host, Command::get_health);
         EXPECT_EQ(co_await read(host, health_good.size()), health_good);
@@ -341,14 +347,19 @@ TEST_F(VirtualLidarFaults, IsToldThroughItsControlSocket) {
     EXPECT_FALSE(fs::exists(path));
 }
 
+// Without the fault a host receives what was measured, at the line's speed, and no byte more.
 TEST_F(VirtualLidarFaults, AFloodIsMoreThanALineCarries) {
-    create({.faults = {"flood"}});
-    run_with([this]() -> asio::awaitable<void> {
+    std::size_t measured = 0;
+    create({
+        .faults = {"flood"},
+        .on_measured = [&](const Measured& packet) { measured += packet.bytes.size(); },
+    });
+    run_with([&]() -> asio::awaitable<void> {
         auto port = open_port();
         co_await write(port, Command::force_scan);
-        const auto begun = std::chrono::steady_clock::now();
-        co_await read(port, 500'000);  // 43 s at 115200 baud
-        EXPECT_LT(std::chrono::steady_clock::now() - begun, 9s);
+        constexpr std::size_t received = 500'000;
+        co_await read(port, received);
+        EXPECT_LT(measured, received / 2);
         obey("clear flood");
         obey("unplug");
     });

@@ -50,7 +50,7 @@ protected:
     /// The same of a lidar that runs already.
     void run_with_rest(std::function<boost::asio::awaitable<void>()> host) {
         tasks_.spawn(host_then_stop(std::move(host)));
-        context_.run_for(std::chrono::seconds(10));
+        context_.run_for(std::chrono::seconds(60));
         ASSERT_EQ(tasks_.size(), 0U) << "did not end in time";
         if (failure_) {
             std::rethrow_exception(failure_);

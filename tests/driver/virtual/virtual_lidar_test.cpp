@@ -139,7 +139,7 @@ TEST_F(VirtualLidarTest, StopsAlsoBeforeItHasBegun) {
     create();
     lidar_->stop();
     tasks_.spawn(lidar_->run());
-    context_.run_for(10s);
+    context_.run_for(60s);
     EXPECT_EQ(tasks_.size(), 0U);
 }
 
@@ -148,7 +148,7 @@ TEST_F(VirtualLidarTest, EndsTidilyWhenCancelled) {
     create({.link = link});
     tasks_.spawn(lidar_->run());
     asio::post(context_, [this] { tasks_.cancel(); });
-    context_.run_for(10s);
+    context_.run_for(60s);
     EXPECT_EQ(tasks_.size(), 0U);
     EXPECT_FALSE(fs::exists(fs::symlink_status(link)));
     EXPECT_FALSE(failure_);
@@ -161,7 +161,7 @@ TEST_F(VirtualLidarTest, CanBeDestroyedInMidScan) {
     const auto request = protocol::encode({Command::force_scan, {}});
     ASSERT_EQ(::write(port.native_handle(), request.data(), request.size()), 2);
     while (log_.str().find("scan started") == std::string::npos) {
-        ASSERT_EQ(context_.run_one_for(10s), 1U);
+        ASSERT_EQ(context_.run_one_for(60s), 1U);
     }
     lidar_.reset(
     );  // as at the end of a worker: nothing runs any more, coroutines go with the context
