@@ -26,16 +26,16 @@ TEST(Discovery, FindsLidarsOfDifferentSpeedsBesideTheOneNamed) {
          "--discover",
          scratch.file("nam*")}
     );
-    const auto log = gateway.process.rest_of_log();
-    EXPECT_THAT(log, HasSubstr("not looking at " + scratch.file("named") + ": named by --lidar"));
+    gateway.process.wait_for_log("not looking at " + scratch.file("named") + ": named by --lidar");
     Subscriber subscriber("tcp://" + gateway.tcp);
     subscriber.subscribe();
     std::set<std::string> scanning;
     while (scanning.size() < 3) {
-        const auto message = subscriber.next([](const v1::ServerMessage& any) {
-            return any.has_lidar() && any.lidar().state() == v1::Lidar::SCANNING;
-        });
-        scanning.insert(message.lidar().url());
+        for (const auto& lidar : lidars_in(subscriber.next())) {
+            if (lidar.state() == v1::Lidar::SCANNING) {
+                scanning.insert(lidar.url());
+            }
+        }
     }
     EXPECT_THAT(
         scanning,

@@ -6,10 +6,10 @@
 #include <google/protobuf/util/json_util.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <csignal>
 #include <fcntl.h>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -71,11 +71,20 @@ void expect_failure(const Told& told, const std::string& check, const std::strin
 
 class HealthyTest : public testing::TestWithParam<std::string> {};
 
-TEST_P(HealthyTest, PassesEveryCheckInSecondsAndIsLeftAtRest) {
-    VirtualLidarProcess lidar({"--model", GetParam()});
-    const auto start = std::chrono::steady_clock::now();
-    const auto [exit_code, diagnosis] = doctor(lidar.port);
-    const auto took = std::chrono::steady_clock::now() - start;
+TEST_P(HealthyTest, PassesEveryCheckAndIsLeftAtRest) {
+    const ScratchDirectory scratch;
+    const auto control = scratch.file("control");
+    std::unique_ptr<VirtualLidarProcess> lidar;
+    Told told;
+    for (int runs = 0; lidar == nullptr || !lost_nothing(control); ++runs) {
+        ASSERT_LT(runs, most_runs) << "the machine is too busy to read a lidar";
+        lidar.reset();
+        lidar = std::make_unique<VirtualLidarProcess>(
+            std::vector<std::string>{"--model", GetParam(), "--control", control}
+        );
+        told = doctor(lidar->port);
+    }
+    const auto& [exit_code, diagnosis] = told;
     EXPECT_EQ(exit_code, 0);
     EXPECT_EQ(diagnosis.verdict(), v1::Diagnosis::OK) << diagnosis.cause();
     EXPECT_EQ(diagnosis.checks_size(), 13);
@@ -83,10 +92,9 @@ TEST_P(HealthyTest, PassesEveryCheckInSecondsAndIsLeftAtRest) {
         EXPECT_EQ(check.verdict(), v1::Diagnosis::OK) << check.id() << ": " << check.finding();
     }
     EXPECT_EQ(diagnosis.cause(), "");
-    EXPECT_LT(took, std::chrono::seconds(15));  // 2 to 5 s on a machine that is not busy
-    lidar.process.wait_for_log("scan stopped");
-    lidar.process.wait_for_log("motor off");
-    lidar.process.wait_for_log("closed by the host");
+    lidar->process.wait_for_log("scan stopped");
+    lidar->process.wait_for_log("motor off");
+    lidar->process.wait_for_log("closed by the host");
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -283,7 +291,7 @@ v1::Diagnosis diagnosis_of(const GatewayProcess& gateway, const std::string& id)
 }
 
 TEST(DiagnosisApi, TellsOfALidarThatScansWithoutDisturbingIt) {
-    VirtualLidarProcess lidar({"--model", "s2"});
+    VirtualLidarProcess lidar;
     GatewayProcess gateway({"--lidar", lidar.port + "?name=mine"});
     Subscriber subscriber("tcp://" + gateway.tcp);
     subscriber.subscribe();

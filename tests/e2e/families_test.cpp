@@ -21,10 +21,6 @@ using protocol::AnswerType;
 using testing::ElementsAreArray;
 using testing::HasSubstr;
 
-bool is_scanning(const v1::ServerMessage& message) {
-    return message.has_lidar() && message.lidar().state() == v1::Lidar::SCANNING;
-}
-
 struct Family {
     std::string key;
     std::string model;  ///< as the gateway tells it
@@ -152,8 +148,10 @@ std::map<std::string, std::string> models_and_modes(const GatewayProcess& gatewa
     std::set<std::string> streaming;
     while (scanning.size() < 3 || streaming.size() < 3) {
         const auto message = client.next();
-        if (is_scanning(message)) {
-            scanning[message.lidar().id()] = message.lidar();
+        for (const auto& lidar : lidars_in(message)) {
+            if (lidar.state() == v1::Lidar::SCANNING) {
+                scanning[lidar.id()] = lidar;
+            }
         }
         if (message.has_frame()) {
             streaming.insert(message.frame().lidar());
@@ -255,8 +253,8 @@ TEST(Families, AC1ToldInItsUrlToTurnAtAnotherSpeedScansAndWarns) {
     const GatewayProcess gateway({"--lidar", played.port + "?hz=7"});
     Subscriber client("tcp://" + gateway.tcp);
     client.subscribe();
-    client.next([](const v1::ServerMessage& message) {
-        return is_scanning(message) && !message.lidar().rotation().warning().empty();
+    client.wait_for_lidar([](const v1::Lidar& lidar) {
+        return lidar.state() == v1::Lidar::SCANNING && !lidar.rotation().warning().empty();
     });
     client.next_sweep();
 }

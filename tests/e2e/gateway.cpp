@@ -63,10 +63,26 @@ VirtualLidarProcess::VirtualLidarProcess(std::vector<std::string> options)
     : process(command("virtual", std::move(options)))
     , port(process.wait_for_output("")) {}
 
+bool lost_nothing(const std::string& control) {
+    Process asking({program(), "virtual", "--control", control, "--send", "status"});
+    if (asking.wait() != 0) {
+        throw std::runtime_error("the virtual lidar does not answer: " + asking.rest_of_log());
+    }
+    return asking.rest_of_output().find("unread_bytes=0\n") != std::string::npos;
+}
+
 GatewayProcess::GatewayProcess(std::vector<std::string> options)
     : process(command("serve", on_own_ports(std::move(options))))
     , http(address_in(process.wait_for_output("page: ")))
     , tcp(address_in(process.wait_for_output("tcp: "))) {}
+
+std::vector<v1::Lidar> lidars_in(const v1::ServerMessage& message) {
+    std::vector<v1::Lidar> lidars(message.hello().lidars().begin(), message.hello().lidars().end());
+    if (message.has_lidar()) {
+        lidars.push_back(message.lidar());
+    }
+    return lidars;
+}
 
 Subscriber::Subscriber(const std::string& url) {
     auto connected = run(client::StreamClient::connect(*client::parse_stream_url(url), patience));
@@ -119,22 +135,22 @@ ReceivedSweep Subscriber::next_sweep() {
     return {message.frame().lidar(), message.frame().sequence(), std::move(*scan)};
 }
 
-v1::Lidar Subscriber::wait_for_state(v1::Lidar::State state) {
+v1::Lidar Subscriber::wait_for_lidar(const std::function<bool(const v1::Lidar&)>& wanted) {
     v1::Lidar found;
     next([&](const v1::ServerMessage& message) {
-        if (message.has_lidar() && message.lidar().state() == state) {
-            found = message.lidar();
-            return true;
+        const auto lidars = lidars_in(message);
+        const auto fitting = std::ranges::find_if(lidars, wanted);
+        if (fitting == lidars.end()) {
+            return false;
         }
-        for (const auto& lidar : message.hello().lidars()) {
-            if (lidar.state() == state) {
-                found = lidar;
-                return true;
-            }
-        }
-        return false;
+        found = *fitting;
+        return true;
     });
     return found;
+}
+
+v1::Lidar Subscriber::wait_for_state(v1::Lidar::State state) {
+    return wait_for_lidar([state](const auto& lidar) { return lidar.state() == state; });
 }
 
 std::string Subscriber::wait_for_end() {

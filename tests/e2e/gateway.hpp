@@ -38,6 +38,13 @@ struct VirtualLidarProcess {
     std::string port;  ///< what to open: a path or a URL
 };
 
+/// Whether the virtual lidar that is controlled at this path has lost no byte because its host did
+/// not read in time. Virtual lidars drop what is not read, as real ones do. On a busy machine that
+/// happens, and what a test sees of such a run shows nothing.
+[[nodiscard]] bool lost_nothing(const std::string& control);
+/// So often a test repeats a run in which bytes were lost.
+inline constexpr int most_runs = 20;
+
 /// `sweepcast serve` with these options, on ports of its own where they say none.
 struct GatewayProcess {
     explicit GatewayProcess(std::vector<std::string> options);
@@ -56,6 +63,9 @@ struct ReceivedSweep {
     frame::DecodedScan scan;
 };
 
+/// The lidars whose states a message brings: all in a Hello, one in a state message, else none.
+[[nodiscard]] std::vector<v1::Lidar> lidars_in(const v1::ServerMessage& message);
+
 /// A subscriber that blocks. Every call throws if nothing comes in time.
 class Subscriber {
 public:
@@ -72,7 +82,9 @@ public:
     v1::ServerMessage next(const std::function<bool(const v1::ServerMessage&)>& wanted);
     /// The next sweep; other messages are passed over.
     ReceivedSweep next_sweep();
-    /// Waits until the lidar is in this state.
+    /// Waits for a message with a lidar's state for which `wanted` holds; returns that state.
+    v1::Lidar wait_for_lidar(const std::function<bool(const v1::Lidar&)>& wanted);
+    /// Waits until a lidar is in this state.
     v1::Lidar wait_for_state(v1::Lidar::State state);
     /// Reads until the connection ends; returns the reason given, if any.
     std::string wait_for_end();

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <set>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -23,8 +22,8 @@ constexpr const char* serial_b = "B0B0B0B0000000000000000000000002";
 
 class PortMoves : public testing::Test {
 protected:
-    /// Destroyed, it is pulled out: its port goes, and the link with it, as udev does it. (A link
-    /// that stays may be one to somebody else's terminal by the next moment.)
+    /// Destroyed, it is pulled out: its port goes, and the link with it, as udev does it. The link
+    /// goes first: once the port is gone, its number may be another program's terminal.
     class Lidar {
     public:
         Lidar(const std::string& link, const std::string& serial, const std::string& model)
@@ -33,9 +32,9 @@ protected:
                   std::vector<std::string>{"--link", link, "--serial", serial, "--model", model}
               )) {}
         ~Lidar() {
-            process_.reset();  // killed
             std::error_code ignored;
             std::filesystem::remove(link_, ignored);
+            process_.reset();  // killed
         }
         Lidar(const Lidar&) = delete;
         Lidar& operator=(const Lidar&) = delete;
@@ -58,12 +57,24 @@ protected:
     }
     /// Waits until the lidar of that id scans at that port.
     static v1::Lidar wait_for(Subscriber& client, const std::string& id, const std::string& url) {
-        return client
-            .next([&](const auto& message) {
-                return message.lidar().id() == id && message.lidar().url() == url &&
-                       message.lidar().state() == v1::Lidar::SCANNING;
-            })
-            .lidar();
+        return client.wait_for_lidar([&](const auto& lidar) {
+            return lidar.id() == id && lidar.url() == url && lidar.state() == v1::Lidar::SCANNING;
+        });
+    }
+
+    /// Waits until so many lidars have been seen scanning; returns the URL of each by its id.
+    static std::map<std::string, std::string>
+    scanning_lidars(Subscriber& client, std::size_t count) {
+        std::map<std::string, std::string> urls;
+        client.next([&](const auto& message) {
+            for (const auto& lidar : lidars_in(message)) {
+                if (lidar.state() == v1::Lidar::SCANNING) {
+                    urls[lidar.id()] = lidar.url();
+                }
+            }
+            return urls.size() >= count;
+        });
+        return urls;
     }
 
     ScratchDirectory scratch;
@@ -112,11 +123,8 @@ TEST_F(PortMoves, LidarsThatSwapTheirPortsKeepTheirNames) {
     );
     Subscriber client("tcp://" + gateway.tcp);
     client.subscribe();
-    std::set<std::string> scanning;  // either may tell of something else meanwhile
-    while (scanning.size() < 2) {
-        scanning.insert(client.wait_for_state(v1::Lidar::SCANNING).id());
-    }
-    EXPECT_THAT(scanning, testing::ElementsAre("A0A0A0A0", "back"));
+    const auto scanning = scanning_lidars(client, 2);
+    EXPECT_THAT(scanning, testing::ElementsAre(testing::Key("A0A0A0A0"), testing::Key("back")));
     a.reset();
     b.reset();
     b = plug("one", serial_b);
@@ -179,9 +187,9 @@ TEST_F(PortMoves, ALidarThatMovedWhileTheGatewayWasOffIsFoundByItsSerialNumber) 
          "--state-dir",
          scratch.file("state")}
     );
+    EXPECT_EQ(Subscriber("tcp://" + gateway.tcp).next().hello().lidars_size(), 2)
+        << "it is not there twice";
     Subscriber client("tcp://" + gateway.tcp);
-    const auto hello = client.next();
-    EXPECT_EQ(hello.hello().lidars_size(), 2) << "it is not there twice";
     client.subscribe();
     wait_for(client, "front", scratch.file("three") + "?name=front");
 }
@@ -213,13 +221,8 @@ TEST_F(PortMoves, AnotherLidarOnItsPortIsNotTakenForOneThatMovedWhileTheGatewayW
     );
     Subscriber client("tcp://" + gateway.tcp);
     client.subscribe();
-    std::map<std::string, std::string> places;
-    while (places.size() < 2) {
-        const auto scanning = client.wait_for_state(v1::Lidar::SCANNING);
-        places[scanning.id()] = scanning.url();
-    }
     EXPECT_THAT(
-        places,
+        scanning_lidars(client, 2),
         testing::ElementsAre(
             testing::Pair("B0B0B0B0", scratch.file("one")),
             testing::Pair("front", scratch.file("two") + "?name=front")

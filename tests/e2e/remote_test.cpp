@@ -108,10 +108,12 @@ TEST(RemoteLidar, IsPublishedInSectorsToo) {
     far.subscribe(wish);
     frame::FrameDecoder decoder;
     client::SweepJoiner joiner;
-    std::size_t sectors = 0;
-    std::size_t sweeps_seen = 0;
-    // One that was read all at once, by a gateway held up, has fewer.
-    while (sectors < 3 && sweeps_seen < 50) {
+    Sweeps sweeps;
+    // On a busy machine a gateway reads a whole revolution at once and cuts it into fewer sectors,
+    // and either client misses frames. Such a revolution shows nothing: the next one counts.
+    constexpr std::size_t most_sweeps = 300;
+    bool compared = false;
+    for (std::size_t seen = 0; !compared && seen < most_sweeps;) {
         const auto message = far.next([](const auto& received) { return received.has_frame(); });
         const auto& frame = message.frame();
         client::Scan scan;
@@ -121,15 +123,16 @@ TEST(RemoteLidar, IsPublishedInSectorsToo) {
         scan.last = frame.last();
         scan.scan = *decoder.decode(frame);
         if (joiner.take(std::move(scan)) && joiner.sweep().complete) {  // not amid the first turn
-            sectors = frame.sector() + 1;
-            ++sweeps_seen;
+            ++seen;
+            const auto& joined = joiner.sweep();
+            read_until(near, joined.sequence, sweeps);
+            if (frame.sector() + 1 >= 3 && sweeps.contains(joined.sequence)) {
+                expect_same(sweeps.at(joined.sequence), joined.scan);
+                compared = true;
+            }
         }
     }
-    ASSERT_GE(sectors, 3U);
-    Sweeps sweeps;
-    read_until(near, joiner.sweep().sequence, sweeps);
-    ASSERT_TRUE(sweeps.contains(joiner.sweep().sequence));
-    expect_same(sweeps.at(joiner.sweep().sequence), joiner.sweep().scan);
+    EXPECT_TRUE(compared) << "no revolution came in three sectors to both";
 }
 
 TEST(RemoteLidar, IsControlledAtItsOwnGateway) {

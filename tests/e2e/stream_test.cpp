@@ -171,6 +171,28 @@ TEST(Stream, AWrongWishIsRefusedAndTheConnectionLives) {
     EXPECT_GT(client.next_sweep().scan.sweep.samples.size(), 100U);
 }
 
+class LongMessageTest : public testing::TestWithParam<std::string> {};
+
+TEST_P(LongMessageTest, EndsItsConnection) {
+    GatewayProcess gateway({"--lidar", "virtual:a1m8"});
+    const bool is_tcp = GetParam() == "tcp";
+    Subscriber client(is_tcp ? "tcp://" + gateway.tcp : "ws://" + gateway.http + "/api/v1/stream");
+    client.subscribe(std::string(5000, 'x'));  // a request has at most 4096 bytes
+    try {
+        client.next([](const auto& message) { return message.has_error(); });
+        FAIL() << "the gateway has read the message";
+    } catch (const std::runtime_error& failure) {
+        EXPECT_THAT(failure.what(), testing::HasSubstr("the connection has ended"));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Framings,
+    LongMessageTest,
+    testing::Values("tcp", "websocket"),
+    [](const auto& framing) { return framing.param; }
+);
+
 TEST(Stream, BytesThatAreNoMessageEndTheirOwnConnectionOnly) {
     GatewayProcess gateway({"--lidar", "virtual:a1m8"});
     HttpConnection garbage(gateway.tcp);

@@ -31,14 +31,13 @@ TEST(Wish, SectorsAddUpToTheSweepsThatOthersGet) {
         Subscriber whole(stream + "sweep");
         Subscriber sliced(stream + wish);
         std::map<std::uint64_t, Samples> sweeps;
-        for (int i = 0; i < 6; ++i) {
-            auto sweep = whole.next_sweep();
-            sweeps[sweep.sequence] = std::move(sweep.scan.sweep.samples);
-        }
         Samples joined;
         std::uint32_t expected = 1;  // not before a sector 0
         int compared = 0;
-        while (compared < 3) {
+        // On a busy machine a revolution may be read at once, which is one sector, or be missed by
+        // either client. Such a revolution shows nothing.
+        constexpr int most_revolutions = 300;
+        for (int seen = 0; compared < 3 && seen < most_revolutions;) {
             const auto frame = sliced.next(is_frame).frame();
             ASSERT_EQ(frame.kind(), v1::SECTOR);
             if (frame.sector() == 0) {
@@ -54,13 +53,18 @@ TEST(Wish, SectorsAddUpToTheSweepsThatOthersGet) {
             if (!frame.last()) {
                 continue;
             }
-            EXPECT_GT(frame.sector(), 0U);
-            if (const auto same = sweeps.find(frame.sequence()); same != sweeps.end()) {
+            ++seen;
+            while (sweeps.empty() || sweeps.rbegin()->first < frame.sequence()) {
+                auto sweep = whole.next_sweep();
+                sweeps[sweep.sequence] = std::move(sweep.scan.sweep.samples);
+            }
+            const auto same = sweeps.find(frame.sequence());
+            if (frame.sector() > 0 && same != sweeps.end()) {
                 EXPECT_EQ(joined, same->second) << wish;
                 ++compared;
             }
-            ASSERT_LE(frame.sequence(), sweeps.rbegin()->first) << "too few were compared";
         }
+        EXPECT_EQ(compared, 3) << wish;
     }
 }
 
