@@ -415,7 +415,7 @@ test("reset brings the lidar back", async () => {
   const answer = page.waitForResponse((each) => each.url().endsWith("/reset"));
   await press("#reset");
   assert.equal((await answer).status(), 200);
-  assert.ok((await page.evaluate(() => window.wordsSeen)).includes("Resetting"));
+  await until(() => window.wordsSeen.includes("Resetting"));
   await until(() => document.getElementById("reset").textContent === "Reset");
   await startScanning();
 });

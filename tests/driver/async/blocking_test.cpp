@@ -63,7 +63,7 @@ protected:
     Made run(const std::string& lane, std::chrono::milliseconds limit, std::function<int()> call) {
         auto made = start(lane, limit, std::move(call));
         context_.restart();
-        context_.run_for(20s);
+        context_.run_for(60s);
         return made.get();
     }
 
@@ -159,7 +159,7 @@ TEST_F(RunBlocking, EndsAtOnceWhenCancelled) {
     context_.restart();
     context_.poll();
     cancel_.emit(asio::cancellation_type::terminal);
-    context_.run_for(20s);
+    context_.run_for(60s);
     ASSERT_EQ(made.wait_for(0s), std::future_status::ready);
     EXPECT_THROW(made.get(), boost::system::system_error);
 }

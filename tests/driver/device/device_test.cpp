@@ -36,7 +36,7 @@ using protocol::Command;
 using testing::Contains;
 using testing::HasSubstr;
 
-constexpr auto patience = 10s;
+constexpr auto patience = 60s;
 constexpr RecoveryPolicy at_once{.attempts = {1ms, 1ms}, .resets = 0};
 constexpr RecoveryPolicy resets_at_once{
     .attempts = {1ms, 1ms},
@@ -769,6 +769,16 @@ TEST_F(DeviceTest, ScansInTheTypicalModeOfALidarThatListsItsModes) {
     EXPECT_EQ(device->state().mode, "Boost");
     EXPECT_EQ(device->state().modes.size(), 3U);
     EXPECT_THAT(scanner.requests, Contains(protocol::express_scan_request(2)));
+}
+
+TEST_F(DeviceTest, AsksForNoMoreModesThanALidarCanHave) {
+    scanner.list_modes();
+    scanner.conf[{protocol::ConfType::scan_mode_count, 0}] = {0xFF, 0xFF};
+    make_device();
+    play(until_phase(Phase::starting));
+
+    EXPECT_EQ(device->state().modes.size(), 3U);
+    EXPECT_LT(scanner.count(Command::get_lidar_conf), 200U);
 }
 
 TEST_F(DeviceTest, ScansInTheModeOfAnId) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -101,6 +102,12 @@ TEST(Heard, BootTextIsQuotedOnOneLineAndCounted) {
     EXPECT_EQ(heard.boots, 2U);
     EXPECT_THAT(heard.text, HasSubstr("RP LIDAR System. / Firmware Ver 1.25 - rc2"));
     EXPECT_THAT(heard.text, Not(HasSubstr("\n")));
+}
+
+TEST(Heard, OfLongTextOnlyTheBeginningIsQuoted) {
+    const auto heard = classify(115200, bytes_of("$GPGGA" + std::string(10'000, '1')));
+    EXPECT_EQ(heard.kind, HeardKind::text);
+    EXPECT_EQ(heard.text, "$GPGGA" + std::string(74, '1'));
 }
 
 TEST(Heard, TextOfAnotherDeviceIsNotBootText) {

@@ -38,7 +38,7 @@ protected:
             asio::use_future
         );
         context_.restart();
-        while (opened.wait_for(0s) != std::future_status::ready && context_.run_one_for(20s) != 0) {
+        while (opened.wait_for(0s) != std::future_status::ready && context_.run_one_for(60s) != 0) {
         }
         return opened.get();
     }
@@ -166,7 +166,7 @@ TEST_F(OpenLinkTest, ThrowsWhenCancelled) {
     ASSERT_FALSE(ended);
     cancel.emit(asio::cancellation_type::terminal);
     context_.restart();
-    while (!ended && context_.run_one_for(10s) != 0) {
+    while (!ended && context_.run_one_for(60s) != 0) {
     }
     EXPECT_TRUE(failure);
 }

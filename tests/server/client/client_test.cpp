@@ -3,6 +3,7 @@
 
 #include "server/client/blocking_client.hpp"
 #include "server/client/known_lidars.hpp"
+#include "server/frame/error.hpp"
 #include "server/frame/frame_encoder.hpp"
 #include "server/frame/message_framing.hpp"
 
@@ -26,7 +27,7 @@ using boost::asio::ip::tcp;
 namespace sweepcast::client {
 namespace {
 
-constexpr auto patience = 20'000ms;
+constexpr auto patience = 60'000ms;
 
 /// The gateway's end of a connection.
 class Peer {
@@ -253,6 +254,23 @@ TEST_F(ClientTest, SaysIfWhatAnswersIsNoGatewayOrAnotherVersion) {
     ASSERT_FALSE(version);
     EXPECT_NE(version.error().cause.find("version 2"), std::string::npos);
     server.join();
+}
+
+TEST_F(ClientTest, GivesUpAMessageThatIsTooLongBeforeItComes) {
+    BlockingClient client(url(), impatient(Reconnect::never));
+    std::thread gateway([this] {
+        auto peer = accept();
+        peer.greet();
+        peer.hear();
+        peer.say_raw("\x81\x80\x80\x04");  // the length, one byte more than 8 MiB
+        EXPECT_ANY_THROW(peer.hear()) << "the connection is to end";
+    });
+    expect_next<Connected>(client);
+    const auto event = client.next(patience);
+    EXPECT_FALSE(event) << "the client waits for the message";
+    EXPECT_EQ(event ? error_code() : event.error().code, frame::errc::message_too_long);
+    client.cancel();
+    gateway.join();
 }
 
 TEST_F(ClientTest, GivesUpOnOneThatNeverGreets) {

@@ -157,6 +157,22 @@ TEST_F(LidarMemoryTest, AFileTooLargeIsNotRead) {
     EXPECT_THAT(LidarMemory().open(file).error().cause, HasSubstr("too large"));
 }
 
+TEST_F(LidarMemoryTest, RemembersAThousandLidarsAndNoMore) {
+    constexpr std::uint32_t most = 1000;
+    std::string list;
+    for (std::uint32_t i = 1; i <= most + 1; ++i) {  // each at a speed of its own
+        const auto number = std::to_string(i);
+        list += (list.empty() ? "" : ",") + R"({"serial": ")" + number +
+                R"(", "port": "p", "baud": )" + number + "}";
+    }
+    put(R"({"lidars": [)" + list + "]}");
+    LidarMemory memory;
+    ASSERT_TRUE(memory.open(file));
+    EXPECT_EQ(memory.baud_hints("p").size(), most);
+    EXPECT_TRUE(memory.note("AAAA", "q", 460800));
+    EXPECT_EQ(memory.baud_hints("p").size(), most);
+}
+
 TEST_F(LidarMemoryTest, AFolderInItsPlaceIsTold) {
     fs::create_directories(file);
     LidarMemory memory;

@@ -177,7 +177,7 @@ protected:
         ports->add_vacant(1, path("virtual"), [this] { moved.set_value(); });
     }
     std::string found_at() {
-        const auto found = moved.get_future().wait_for(std::chrono::seconds(20));
+        const auto found = moved.get_future().wait_for(std::chrono::seconds(60));
         moved = {};
         return found == std::future_status::ready ? ports->path_of(1) : "nowhere";
     }

@@ -73,7 +73,7 @@ protected:
         EXPECT_TRUE(subscription.set_wish(Wish{}));
         subscribed.set_value();
         const auto texts = co_await read_texts(client, count);
-        co_await attendants.join(std::chrono::seconds(20));
+        co_await attendants.join(std::chrono::seconds(60));
         co_return texts;
     }
 

@@ -43,6 +43,16 @@ hub::LidarSnapshot full_snapshot() {
     return lidar;
 }
 
+TEST(LidarMessageTest, OfAnotherGatewaysChangesOnlySoManyAreKept) {
+    v1::Lidar message;
+    to_message(full_snapshot(), message);
+    const auto change = message.recent(0);
+    for (int i = 0; i < 1000; ++i) {
+        *message.add_recent() = change;
+    }
+    EXPECT_EQ(from_message(message).recent.size(), device::recent_changes);
+}
+
 TEST(LidarMessageTest, StatesComeBackAsTheyWere) {
     for (const auto phase : device::all_phases) {
         auto lidar = full_snapshot();
