@@ -9,8 +9,8 @@
 
 namespace sweepcast::test {
 
-/// How long any one event may take before the test gives up on it. Only a test that fails waits this
-/// long, so a busy machine and a sanitizer have room.
+/// How long any one event may take before the test gives up on it. Only a test that fails waits
+/// this long, so a busy machine and a sanitizer have room.
 inline constexpr std::chrono::seconds patience{60};
 
 class Process {
