@@ -13,6 +13,7 @@
 #include <atomic>
 #include <chrono>
 #include <future>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -109,6 +110,17 @@ TEST_F(RunBlocking, DoesNotMakeACallThatWasGivenUpBeforeItsTurn) {
     hang.let_go();
     EXPECT_EQ(run("a", 10s, [] { return 3; }), 3);
     EXPECT_EQ(made, 0);
+}
+
+TEST_F(RunBlocking, CallsThatWereGivenUpDoNotPileUpBehindOneThatHangs) {
+    Hang hang;
+    start_blocking("a", hang.call());
+    hang.wait_until_begun();
+    const auto held = std::make_shared<int>(1);
+    for (int i = 0; i < 100; ++i) {
+        EXPECT_EQ(run("a", 0ms, [held] { return *held; }), std::nullopt);
+    }
+    EXPECT_LT(held.use_count(), 10);
 }
 
 TEST_F(RunBlocking, MakesTheCallsOfALaneInTheirOrder) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string>
 
 namespace sweepcast::capture {
 namespace {
@@ -51,6 +52,14 @@ TEST(CaptureHeaderTest, MakesTextsPrintable) {
     const auto read = header_from_json(to_json(header));
     ASSERT_TRUE(read);
     EXPECT_EQ(read->mode, "Sensi\\u001b[2J\\ntivity");
+}
+
+TEST(CaptureHeaderTest, OfALongTextTheBeginningIsKept) {
+    auto header = full_header();
+    header.mode = std::string(5000, 'x');
+    const auto read = header_from_json(to_json(header));
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->mode, std::string(256, 'x'));
 }
 
 class BadHeaderTest : public testing::TestWithParam<const char*> {};

@@ -201,6 +201,7 @@ TEST(CaptureTest, IsNoneWithoutItsFirstLine) {
 TEST(CaptureTest, WithAHeaderWithoutEndIsRefusedEarly) {
     std::istringstream in("sweepcast capture 1\n" + std::string(1 << 20, ' '));
     ASSERT_FALSE(CaptureReader::open(in));
+    ASSERT_TRUE(in.good()) << "it was read to its end";
     EXPECT_LT(in.tellg(), 2 * static_cast<std::streamoff>(most_header_bytes));
 }
 

@@ -771,16 +771,6 @@ TEST_F(DeviceTest, ScansInTheTypicalModeOfALidarThatListsItsModes) {
     EXPECT_THAT(scanner.requests, Contains(protocol::express_scan_request(2)));
 }
 
-TEST_F(DeviceTest, AsksForNoMoreModesThanALidarCanHave) {
-    scanner.list_modes();
-    scanner.conf[{protocol::ConfType::scan_mode_count, 0}] = {0xFF, 0xFF};
-    make_device();
-    play(until_phase(Phase::starting));
-
-    EXPECT_EQ(device->state().modes.size(), 3U);
-    EXPECT_LT(scanner.count(Command::get_lidar_conf), 200U);
-}
-
 TEST_F(DeviceTest, ScansInTheModeOfAnId) {
     scanner.list_modes();
     make_device({.mode = "1", .recovery = at_once});

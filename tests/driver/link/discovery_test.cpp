@@ -191,6 +191,16 @@ TEST_F(LookAroundTest, FindsEachDeviceWorthALookOnce) {
     );
 }
 
+TEST_F(LookAroundTest, FindsNoMoreDevicesWorthALookThanItsBound) {
+    std::vector<PtyPair> ptys(most_ports + 3);
+    for (std::size_t i = 0; i < ptys.size(); ++i) {
+        scratch_.link("lidar-" + std::to_string(i), ptys[i].path());
+    }
+    const SystemRoots nothing{scratch_.root() / "sys", scratch_.root() / "dev"};
+    const auto found = ports_worth_a_look({(scratch_.root() / "lidar-*").string()}, nothing);
+    EXPECT_EQ(found.size(), most_ports);
+}
+
 TEST(PlaceKey, IsTheSameForAllNamesOfAPlace) {
     const ScratchDirectory scratch;
     const auto file = scratch.file("port", "").string();

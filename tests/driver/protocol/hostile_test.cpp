@@ -66,6 +66,21 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& tested) { return std::string("v") + tested.param.vector; }
 );
 
+TEST(NormalRoomTest, LittleIsReservedAheadOfAPacketThatFails) {
+    Bytes bytes;
+    for (std::uint16_t i = 0; i < 20; ++i) {
+        NormalMeasurement measurement;
+        measurement.starts_revolution = i == 0;
+        measurement.angle = AngleQ6{static_cast<std::uint16_t>(i * 64)};
+        const auto packet = encode_normal(measurement);
+        bytes.insert(bytes.end(), packet.begin(), packet.end());
+    }
+    bytes.resize(1'000'000);
+    const auto decoded = decode_whole(AnswerType::normal, bytes);
+    EXPECT_GE(decoded.samples.size(), 10U);
+    EXPECT_LT(decoded.samples.capacity(), 1000U);
+}
+
 class NoiseTest : public testing::TestWithParam<AnswerType> {};
 
 Bytes random_noise() {

@@ -112,6 +112,12 @@ INSTANTIATE_TEST_SUITE_P(
         Lie{"angle_unit_finer_than_any",
             [](auto& s) { s.set_angle_units_per_turn(65537); },
             errc::unit_unknown},
+        Lie{"ramp_longer_than_any_scan",
+            [](auto& s) {
+                s.clear_angle();
+                s.mutable_ramps()->set_length(65537);
+            },
+            errc::angle_out_of_range},
         Lie{"first_angle_negative", [](auto& s) { s.set_angle(0, -1); }, errc::angle_out_of_range},
         Lie{"first_angle_a_whole_turn",
             [](auto& s) { s.set_angle(0, 23040); },

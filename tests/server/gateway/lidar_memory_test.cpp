@@ -162,7 +162,7 @@ TEST_F(LidarMemoryTest, RemembersAThousandLidarsAndNoMore) {
     std::string list;
     for (std::uint32_t i = 1; i <= most + 1; ++i) {  // each at a speed of its own
         const auto number = std::to_string(i);
-        list += (list.empty() ? "" : ",") + R"({"serial": ")" + number +
+        list += std::string(list.empty() ? "" : ",") + R"({"serial": ")" + number +
                 R"(", "port": "p", "baud": )" + number + "}";
     }
     put(R"({"lidars": [)" + list + "]}");

@@ -171,6 +171,7 @@ TEST_P(BadParameterTest, IsRefusedAndQuoted) {
 }
 
 const std::string too_long = "name=" + std::string(65, 'x');
+const std::string mode_too_long = "mode=" + std::string(65, 'x');
 
 INSTANTIATE_TEST_SUITE_P(
     Texts,
@@ -183,6 +184,7 @@ INSTANTIATE_TEST_SUITE_P(
         "name=.",
         "name=..",
         too_long.c_str(),
+        mode_too_long.c_str(),
         "mode=",
         "hz=",
         "hz=fast",

@@ -103,7 +103,7 @@ TEST_F(OutboxTest, FinishesAFrameThatTheSocketTookAPartOf) {
 }
 
 TEST_F(OutboxTest, DropsTheOldestThatWaitAndTellsHowMany) {
-    stall({.frames = 2});
+    stall({.frames = 2}, 0ms);
     for (std::uint64_t sequence = 2; sequence <= 9; ++sequence) {
         outbox.push_frame(frame_of(sequence));
     }
@@ -115,16 +115,15 @@ TEST_F(OutboxTest, DropsTheOldestThatWaitAndTellsHowMany) {
 }
 
 TEST_F(OutboxTest, TellsNoMoreOftenThanAgreed) {
-    stall({.frames = 1});
+    stall({.frames = 1}, 1h);
     for (std::uint64_t sequence = 2; sequence <= 50; ++sequence) {
         outbox.push_frame(frame_of(sequence, beyond_any_buffer));
-        client.read(usual_size);
-        client.run();
+        if (sequence % 5 == 0) {
+            read_on();  // all that waits goes out, and something was dropped before
+        }
     }
-    read_on();
+    EXPECT_GE(outbox.counts().frames_dropped, 10U);
     const auto said = words(client.take());
-    EXPECT_EQ(std::ranges::count(said, std::string("dropped 47")), 0)
-        << "more came after the first";
     EXPECT_LE(
         std::ranges::count_if(said, [](auto& word) { return word.starts_with("dropped"); }),
         1
