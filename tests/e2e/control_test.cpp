@@ -175,7 +175,8 @@ TEST(Control, ALidarThatVanishesIsReportedAndTakenAgain) {
 }
 
 TEST(Control, AGatewayThatWasHeldUpTakesItForNoFaultOfTheLidar) {
-    VirtualLidarProcess lidar;
+    // So fast that less than a revolution waits when the gateway goes on.
+    VirtualLidarProcess lidar({"--model", "s2"});
     GatewayProcess gateway({"--lidar", lidar.port});
     Subscriber client("tcp://" + gateway.tcp);
     client.subscribe();
