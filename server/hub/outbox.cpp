@@ -99,7 +99,7 @@ asio::awaitable<void> Outbox::run() {
                 asio::redirect_error(asio::use_awaitable, woken)
             );
         } else {  // what is new of its losses is not to be told yet
-            asio::steady_timer pause(socket_.get_executor(), told_at_ + between_news_);
+            asio::steady_timer pause(socket_.get_executor(), news_due());
             attendance_->pause = &pause;
             co_await pause.async_wait(asio::redirect_error(asio::use_awaitable, woken));
             attendance_->pause = nullptr;
@@ -183,7 +183,7 @@ bool Outbox::begin_next() {
         rest_ = {std::exchange(own_, {}), {}};
         return true;
     }
-    if (news() && Clock::now() - told_at_ >= between_news_) {
+    if (news() && Clock::now() >= news_due()) {
         told_at_ = Clock::now();
         dropped_told_ = mailbox_.frames_dropped();
         begin(tell_missed_(counts()));

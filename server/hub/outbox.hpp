@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -116,6 +117,10 @@ private:
     void call_attendant();
     void fail(boost::system::error_code why);
     [[nodiscard]] bool news() const { return mailbox_.frames_dropped() != dropped_told_; }
+    /// Returns when the next losses may be reported; the first ones at once.
+    [[nodiscard]] Clock::time_point news_due() const {
+        return told_at_ ? *told_at_ + between_news_ : Clock::time_point::min();
+    }
 
     State state_{State::ready};
     bool closed_{};
@@ -135,7 +140,7 @@ private:
     TellMissed tell_missed_{};
     std::chrono::milliseconds between_news_{};
     std::uint64_t dropped_told_{};
-    Clock::time_point told_at_{};
+    std::optional<Clock::time_point> told_at_;  ///< when losses were last reported
     Attend attend_;
     /// What is known of run(). It has a share of it: where contexts are torn down with coroutines
     /// still in them, it may be the last to go.

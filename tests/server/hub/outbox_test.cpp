@@ -114,6 +114,15 @@ TEST_F(OutboxTest, DropsTheOldestThatWaitAndTellsHowMany) {
     EXPECT_EQ(outbox.counts().frames_dropped, 6U);
 }
 
+TEST_F(OutboxTest, ReportsTheFirstLossAtOnceHoweverShortTheMachineHasBeenUp) {
+    stall({.frames = 2}, std::chrono::years(100));
+    for (std::uint64_t sequence = 2; sequence <= 9; ++sequence) {
+        outbox.push_frame(frame_of(sequence));
+    }
+    read_on();
+    EXPECT_THAT(words(client.take()), ElementsAre("frame 1", "dropped 6", "frame 8", "frame 9"));
+}
+
 TEST_F(OutboxTest, TellsNoMoreOftenThanAgreed) {
     stall({.frames = 1}, 1h);
     for (std::uint64_t sequence = 2; sequence <= 50; ++sequence) {
