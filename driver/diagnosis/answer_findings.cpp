@@ -2,6 +2,7 @@
 
 #include "driver/device/advice.hpp"
 #include "driver/device/error.hpp"
+#include "driver/diagnosis/adapters.hpp"
 #include "driver/diagnosis/next_steps.hpp"
 #include "driver/protocol/model.hpp"
 
@@ -13,11 +14,6 @@
 namespace sweepcast::diagnosis {
 
 namespace {
-
-constexpr std::uint16_t silicon_labs = 0x10c4;
-constexpr std::uint16_t qinheng = 0x1a86;
-/// The line speed of a C1: from here on adapters differ in what they can do.
-constexpr std::uint32_t fast = 460800;
 
 std::string at(const Heard& heard) {
     return heard.baud == 0 ? "" : fmt::format(" at {} baud", heard.baud);
@@ -63,7 +59,7 @@ void add_adapter_doubts(const LineLook& line, std::vector<std::string>& likely) 
         likely.emplace_back(fmt::format(
             "a CH340 adapter such as this one may fail from {} baud on, which a C1, S2 or S3 "
             "needs",
-            fast
+            fast_baud
         ));
     } else if (line.adapter && line.adapter->vendor_id != silicon_labs) {
         likely.emplace_back(

@@ -1,5 +1,6 @@
 #include "driver/diagnosis/scan_findings.hpp"
 
+#include "driver/diagnosis/adapters.hpp"
 #include "driver/diagnosis/answer_findings.hpp"
 #include "driver/diagnosis/next_steps.hpp"
 
@@ -147,8 +148,6 @@ std::string count(const QualityLook& quality) {
 }
 
 std::vector<std::string> reasons_for_damage(const QualityLook& quality) {
-    constexpr std::uint32_t fast = 460800;
-    constexpr std::uint16_t qinheng = 0x1a86;
     if (quality.line.baud == 0) {
         return {
             "the network loses datagrams: a wireless link, a busy switch",
@@ -157,7 +156,7 @@ std::vector<std::string> reasons_for_damage(const QualityLook& quality) {
     std::vector<std::string> likely{
         "the cable is bad, too long, or beside the motor's leads",
         "the grounds of lidar, adapter and computer are not connected, or the supply is unsteady"};
-    if (quality.line.baud >= fast) {
+    if (quality.line.baud >= fast_baud) {
         const bool doubtful = quality.adapter && quality.adapter->vendor_id == qinheng;
         likely.insert(
             doubtful ? likely.begin() : likely.end(),

@@ -35,7 +35,7 @@ constexpr std::uint64_t enough_sweeps = 8;
 constexpr auto settle_limit = 3s;
 constexpr auto sweeps_limit = 4s;
 /// What comes instead of samples shows within so many bytes.
-constexpr std::size_t heard_at_most = 4096;
+constexpr std::size_t text_at_most = 4096;
 
 std::chrono::milliseconds since(Clock::time_point start) {
     return std::chrono::round<std::chrono::milliseconds>(Clock::now() - start);
@@ -52,7 +52,7 @@ public:
     void watch(link::Link& link) { link_ = &link; }
 
     void on_read(std::span<const std::uint8_t> bytes) override {
-        const auto more = std::min(bytes.size(), heard_at_most - heard_.size());
+        const auto more = std::min(bytes.size(), text_at_most - heard_.size());
         heard_
             .insert(heard_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(more));
         if (first_samples_ && Clock::now() - *first_samples_ > sweeps_limit) {

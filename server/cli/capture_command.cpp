@@ -27,7 +27,7 @@ namespace asio = boost::asio;
 
 namespace {
 
-constexpr const char* footer = R"(
+constexpr const char* capture_footer = R"(
 The lidar is asked who it is, then scans, and every byte in both directions goes into the file with the time at
 which it passed. Such a file shows what a lidar really said: attach it to a bug report (`zstd` makes it smaller).
 
@@ -195,7 +195,7 @@ void add_capture_command(CLI::App& app, int& exit_code) {
         ->capture_default_str();
     command.add_option("--baud", arguments->baud, "Line speed, in place of trying the usual ones")
         ->check(CLI::Range(link::lowest_baud, link::highest_baud));
-    command.footer(footer);
+    command.footer(capture_footer);
     command.callback([arguments, &exit_code] { exit_code = capture(*arguments); });
 }
 

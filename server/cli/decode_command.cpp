@@ -32,7 +32,7 @@ namespace {
 using capture::CaptureReader;
 using protocol::Decoded;
 
-constexpr const char* footer = R"(
+constexpr const char* decode_footer = R"(
 A capture, as `sweepcast capture` writes it, tells itself what it holds: its measurement streams are decoded one
 after the other. Anything else is taken as the bytes of one stream, without its descriptor, and needs --type.
 
@@ -268,7 +268,7 @@ void add_decode_command(CLI::App& app, int& exit_code) {
         )
         ->check(CLI::Range(0.0, 1'000'000.0));
     command.add_flag("--units", arguments->units, "Print degrees and millimetres");
-    command.footer(footer);
+    command.footer(decode_footer);
     command.callback([arguments, &exit_code] { exit_code = decode(*arguments); });
 }
 

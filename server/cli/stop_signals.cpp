@@ -17,7 +17,7 @@ namespace asio = boost::asio;
 namespace {
 
 /// Those that a user or a service manager sends to stop a program.
-constexpr std::array commands{SIGINT, SIGTERM, SIGQUIT};
+constexpr std::array command_signals{SIGINT, SIGTERM, SIGQUIT};
 
 /// The others whose default action ends a program, but for real-time signals.
 constexpr std::array others{
@@ -47,7 +47,7 @@ void add_stop_signals(asio::signal_set& signals, int other_use) {
             signals.add(signal);
         }
     };
-    std::ranges::for_each(commands, add);
+    std::ranges::for_each(command_signals, add);
     std::ranges::for_each(others, add);
     for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) {
         add(signal);
@@ -66,7 +66,7 @@ StopSignals::StopSignals() : signals_(context_) {
             return;
         }
         told_ = true;
-        for (const int signal : commands) {
+        for (const int signal : command_signals) {
             boost::system::error_code not_held;  // it was ignored at the start
             signals_.remove(signal, not_held);
         }

@@ -16,17 +16,17 @@ namespace sweepcast::frame {
 
 namespace {
 
-struct FreeContext {
+struct FreeDecompressor {
     void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
 };
 
-struct FreeDictionary {
+struct FreeDecompressorDictionary {
     void operator()(ZSTD_DDict* dictionary) const { ZSTD_freeDDict(dictionary); }
 };
 
 /// Ours, digested for decompression; one for all decoders.
-const ZSTD_DDict* digested_dictionary() {
-    static const std::unique_ptr<ZSTD_DDict, FreeDictionary> dictionary(
+const ZSTD_DDict* decompressor_dictionary() {
+    static const std::unique_ptr<ZSTD_DDict, FreeDecompressorDictionary> dictionary(
         ZSTD_createDDict(dictionary_bytes().data(), dictionary_bytes().size())
     );
     if (!dictionary) {
@@ -53,7 +53,7 @@ struct FrameDecoder::Workspace {
         }
         ZSTD_DCtx_refDDict(
             context.get(),
-            frame.dictionary() != 0 ? digested_dictionary() : nullptr
+            frame.dictionary() != 0 ? decompressor_dictionary() : nullptr
         );
         const auto own_size = ZSTD_getFrameContentSize(body.data(), body.size());
         if (own_size == ZSTD_CONTENTSIZE_ERROR) {
@@ -92,7 +92,7 @@ struct FrameDecoder::Workspace {
         }
     }
 
-    std::unique_ptr<ZSTD_DCtx, FreeContext> context;
+    std::unique_ptr<ZSTD_DCtx, FreeDecompressor> context;
     std::string raw;
     v1::Scan scan;
 };

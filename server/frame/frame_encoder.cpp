@@ -23,17 +23,17 @@ namespace {
 /// 1,173 in 44; 0x85 of 3,209 samples 2,252 in 13, 2,255 in 22, 2,253 in 26, 2,253 in 46.
 constexpr int zstd_level = 4;
 
-struct FreeContext {
+struct FreeCompressor {
     void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
 };
 
-struct FreeDictionary {
+struct FreeCompressorDictionary {
     void operator()(ZSTD_CDict* dictionary) const { ZSTD_freeCDict(dictionary); }
 };
 
 /// Ours, digested for compression; one for all encoders.
-const ZSTD_CDict* digested_dictionary() {
-    static const std::unique_ptr<ZSTD_CDict, FreeDictionary> dictionary(
+const ZSTD_CDict* compressor_dictionary() {
+    static const std::unique_ptr<ZSTD_CDict, FreeCompressorDictionary> dictionary(
         ZSTD_createCDict(dictionary_bytes().data(), dictionary_bytes().size(), zstd_level)
     );
     if (!dictionary) {
@@ -59,7 +59,7 @@ struct FrameEncoder::Workspace {
     }
 
     void compress(bool with_dictionary, std::string& out) {
-        ZSTD_CCtx_refCDict(context.get(), with_dictionary ? digested_dictionary() : nullptr);
+        ZSTD_CCtx_refCDict(context.get(), with_dictionary ? compressor_dictionary() : nullptr);
         out.resize(ZSTD_compressBound(raw.size()));
         const std::size_t size =
             ZSTD_compress2(context.get(), out.data(), out.size(), raw.data(), raw.size());
@@ -71,7 +71,7 @@ struct FrameEncoder::Workspace {
         out.resize(size);
     }
 
-    std::unique_ptr<ZSTD_CCtx, FreeContext> context;
+    std::unique_ptr<ZSTD_CCtx, FreeCompressor> context;
     v1::Scan scan;
     std::string raw;
     v1::ServerMessage message;

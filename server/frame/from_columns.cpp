@@ -21,7 +21,7 @@ namespace sweepcast::frame {
 namespace {
 
 using protocol::Sample;
-using Samples = std::span<Sample>;
+using MutableSamples = std::span<Sample>;
 
 constexpr std::uint32_t largest_byte = 255;
 constexpr std::uint64_t longest_gap = std::numeric_limits<std::int64_t>::max();
@@ -76,7 +76,7 @@ Result<std::vector<AngleFix>> fixes_of(const v1::AngleRamps& message, std::size_
     return fixes;
 }
 
-Result<void> read_ramps(const v1::AngleRamps& message, Samples samples) {
+Result<void> read_ramps(const v1::AngleRamps& message, MutableSamples samples) {
     AngleRamps ramps;
     ramps.length = message.length();
     ramps.skip = message.skip();
@@ -108,7 +108,7 @@ Result<void> read_ramps(const v1::AngleRamps& message, Samples samples) {
     return {};
 }
 
-Result<void> read_angles(const v1::Scan& scan, Samples samples) {
+Result<void> read_angles(const v1::Scan& scan, MutableSamples samples) {
     const std::uint32_t per_turn = scan.angle_units_per_turn();
     if (per_turn == 0 || per_turn > q14_per_turn) {
         return error_code(errc::unit_unknown);
@@ -132,7 +132,7 @@ Result<void> read_angles(const v1::Scan& scan, Samples samples) {
 }
 
 /// Before the angles, which may depend on them.
-Result<void> read_distances(const v1::Scan& scan, Samples samples) {
+Result<void> read_distances(const v1::Scan& scan, MutableSamples samples) {
     const std::uint32_t unit_um = scan.distance_unit_um();
     if (unit_um == 0 || unit_um > coarsest_um) {
         return error_code(errc::unit_unknown);
@@ -157,7 +157,7 @@ Result<void> read_distances(const v1::Scan& scan, Samples samples) {
 }
 
 /// After the distances: without a column they tell which samples have a quality.
-Result<void> read_qualities(const v1::Scan& scan, Samples samples) {
+Result<void> read_qualities(const v1::Scan& scan, MutableSamples samples) {
     if (scan.echo_quality() > largest_byte) {
         return error_code(errc::quality_out_of_range);
     }
@@ -170,7 +170,7 @@ Result<void> read_qualities(const v1::Scan& scan, Samples samples) {
     return {};
 }
 
-Result<void> read_flags(const v1::Scan& scan, Samples samples) {
+Result<void> read_flags(const v1::Scan& scan, MutableSamples samples) {
     if (scan.flag() > largest_byte) {
         return error_code(errc::flag_out_of_range);
     }
@@ -211,7 +211,7 @@ protocol::SampleTime first_time(const v1::Scan& scan) {
 }
 
 /// Any time is one that a sample can have: sums are modulo 2^64.
-Result<void> read_times(const v1::Scan& scan, Samples samples) {
+Result<void> read_times(const v1::Scan& scan, MutableSamples samples) {
     if (!steps_fit(scan, samples.size())) {
         return error_code(errc::column_length_wrong);
     }
@@ -234,7 +234,7 @@ Result<void> read_times(const v1::Scan& scan, Samples samples) {
     return {};
 }
 
-Result<void> read_samples(const v1::Scan& scan, Samples samples) {
+Result<void> read_samples(const v1::Scan& scan, MutableSamples samples) {
     for (const auto read : {read_distances, read_angles, read_qualities, read_flags, read_times}) {
         if (auto done = read(scan, samples); !done) {
             return done;

@@ -7,11 +7,11 @@ namespace sweepcast::frame {
 
 namespace {
 
-constexpr std::int64_t turn = 65536;
+constexpr std::int64_t units_per_turn = 65536;
 constexpr std::int64_t mdeg_per_turn = 360'000;
 /// Farther from the sample before than this, forward or back, is out of line (as SweepAssembler
 /// has it).
-constexpr std::int64_t most_in_line = turn / 8;
+constexpr std::int64_t most_in_line = units_per_turn / 8;
 
 std::int64_t way_forward(std::uint16_t from, std::uint16_t to) {
     return static_cast<std::uint16_t>(to - from);
@@ -19,7 +19,7 @@ std::int64_t way_forward(std::uint16_t from, std::uint16_t to) {
 
 std::int64_t shorter_way(std::uint16_t from, std::uint16_t to) {
     const auto forward = way_forward(from, to);
-    return forward > turn / 2 ? forward - turn : forward;
+    return forward > units_per_turn / 2 ? forward - units_per_turn : forward;
 }
 
 bool in_line(std::int64_t way) {
@@ -44,7 +44,7 @@ std::optional<Slice> SectorCutter::cut(const device::SweepProgress& progress) {
         return std::nullopt;
     }
     if (sector_mdeg_ > 0) {
-        const auto passed = std::max<std::int64_t>(position_, 0) * mdeg_per_turn / turn;
+        const auto passed = std::max<std::int64_t>(position_, 0) * mdeg_per_turn / units_per_turn;
         sectors_ = std::max(sectors_, static_cast<std::uint32_t>(passed / sector_mdeg_));
     }
     return Slice{std::exchange(cut_, samples.size()), samples.size(), false};
@@ -92,7 +92,7 @@ bool SectorCutter::is_far_enough() const {
         return false;
     }
     const auto next_mdeg = (std::int64_t{sectors_} + 1) * sector_mdeg_;
-    return next_mdeg < mdeg_per_turn && position_ * mdeg_per_turn >= next_mdeg * turn;
+    return next_mdeg < mdeg_per_turn && position_ * mdeg_per_turn >= next_mdeg * units_per_turn;
 }
 
 bool SectorCutter::would_wait_too_long(const device::SweepProgress& progress) const {

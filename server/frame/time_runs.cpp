@@ -30,7 +30,7 @@ std::int64_t round_up(std::int64_t value, std::int64_t by) {
 }
 
 /// Twice the area of the triangle, negative if the way turns right.
-Wide turn(const Point& a, const Point& b, const Point& c) {
+Wide doubled_area(const Point& a, const Point& b, const Point& c) {
     return Wide{b.k - a.k} * (c.ps - a.ps) - Wide{b.ps - a.ps} * (c.k - a.k);
 }
 
@@ -55,11 +55,12 @@ public:
         least_ = least;
         most_ = most;
         // Of the lower ends the upper hull, of the upper ends the lower one.
-        while (lows_.size() > 1 && turn(lows_[lows_.size() - 2], lows_.back(), low) >= 0) {
+        while (lows_.size() > 1 && doubled_area(lows_[lows_.size() - 2], lows_.back(), low) >= 0) {
             lows_.pop_back();
         }
         lows_.push_back(low);
-        while (highs_.size() > 1 && turn(highs_[highs_.size() - 2], highs_.back(), high) <= 0) {
+        while (highs_.size() > 1 &&
+               doubled_area(highs_[highs_.size() - 2], highs_.back(), high) <= 0) {
             highs_.pop_back();
         }
         highs_.push_back(high);

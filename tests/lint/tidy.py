@@ -39,7 +39,7 @@ def flags_of(entry):
     return [
         word
         for before, word in zip(words[first_flag - 1 :], words[first_flag:])
-        if word not in ("-c", "-o", "-MD", "-MT", "-MF") and before not in ("-c", "-o", "-MT", "-MF")
+        if word not in ("-c", "-o", "-MD", "-MT", "-MF", "-Wno-subobject-linkage") and before not in ("-c", "-o", "-MT", "-MF")
     ]
 
 
@@ -109,14 +109,22 @@ class Room:
         return (run.stdout.strip() or run.stderr.strip()) if run.returncode != 0 else ""
 
 
+def sources_of(entry):
+    """The sources that an entry of compile_commands.json compiles: several if the build joins them into one file."""
+    source = Path(entry["directory"], entry["file"])
+    if "/Unity/" not in entry["file"]:
+        return [source.resolve()]
+    return [Path(name).resolve() for name in INCLUDE.findall(source.read_text(encoding="utf-8"))]
+
+
 def rooms_in(build, names):
     """The rooms that the build compiles, in order of name; only those in `names` if there are any."""
     rooms = {}
     for entry in json.loads((build / "compile_commands.json").read_text(encoding="utf-8")):
-        source = Path(entry["directory"], entry["file"]).resolve()
-        name = source.parent.relative_to(ROOT).as_posix() if source.is_relative_to(ROOT) else ""
-        if name.split("/")[0] in ("driver", "server") and (not names or name in names):
-            rooms.setdefault(name, Room(name, build)).add(source, flags_of(entry))
+        for source in sources_of(entry):
+            name = source.parent.relative_to(ROOT).as_posix() if source.is_relative_to(ROOT) else ""
+            if name.split("/")[0] in ("driver", "server") and (not names or name in names):
+                rooms.setdefault(name, Room(name, build)).add(source, flags_of(entry))
     return [rooms[name] for name in sorted(rooms)]
 
 
