@@ -109,7 +109,7 @@ StreamServer::StreamServer(std::size_t workers, hub::MailboxLimits mailbox)
         [this, mailbox, log](tcp::socket socket, std::size_t worker) {
             return http::serve_http(
                 std::move(socket),
-                {apis_[worker], hub_->local(worker), mailbox, log}
+                {apis_[worker], hub_->local(worker), host_names_, mailbox, log}
             );
         },
         log

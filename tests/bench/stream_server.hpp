@@ -5,6 +5,7 @@
 #include "driver/async/worker.hpp"
 #include "server/api/api.hpp"
 #include "server/frame/wire_message.hpp"
+#include "server/http/host_names.hpp"
 #include "server/hub/hub.hpp"
 #include "server/net/listener.hpp"
 
@@ -38,6 +39,7 @@ private:
     net::Workers workers_;
     std::unique_ptr<hub::Hub> hub_;
     std::unique_ptr<api::LidarControl> control_;
+    http::HostNames host_names_{{}};  // clients come by address
     std::vector<api::Api> apis_;
     std::unique_ptr<net::Listener> http_;
     std::unique_ptr<net::Listener> tcp_;

@@ -122,7 +122,7 @@ TEST_P(OtherCommandsSignalTest, EndDoctorWithTheMotorOff) {
 TEST_P(OtherCommandsSignalTest, EndWatch) {
     GatewayProcess gateway({"--lidar", "virtual:a1m8"});
     Process watch({program(), "watch", "tcp://" + gateway.tcp, "--json"});
-    watch.wait_for_output("\"angleDeg\"");
+    watch.wait_for_output("\"angle_deg\"");
     watch.signal(GetParam().number);
     EXPECT_EQ(watch.wait(), 0);
 }

@@ -60,7 +60,7 @@ def main() -> None:
         run(cmake, "--install", build, "--prefix", str(prefix))
         check_headers(prefix / "include")
         os.environ["CMAKE_PREFIX_PATH"] = str(prefix)
-        run(cmake, "-S", consumer, "-B", str(built), f"-DCMAKE_CXX_COMPILER={compiler}", f"-DCMAKE_CXX_FLAGS={flags}")
+        run(cmake, "-G", "Ninja", "-S", consumer, "-B", str(built), f"-DCMAKE_CXX_COMPILER={compiler}", f"-DCMAKE_CXX_FLAGS={flags}")
         run(cmake, "--build", str(built))
         check_usage(built / "consumer")
         gateway, stream = start_gateway(prefix / "bin" / "sweepcast")
@@ -68,8 +68,10 @@ def main() -> None:
             printed = run(str(built / "consumer"), stream).splitlines()
         finally:
             gateway.terminate()
-            gateway.wait()
+            status = gateway.wait()
     print(*printed, sep="\n")
+    if status != 0:
+        raise SystemExit(f"the gateway ended with exit status {status}")
     if len(printed) != 3 or not all(PRINTED.fullmatch(line) for line in printed):
         raise SystemExit("this is not what the program is to print")
 

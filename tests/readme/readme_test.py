@@ -38,6 +38,13 @@ def start_gateway(binary: str) -> tuple[subprocess.Popen, str]:
     raise SystemExit("the gateway did not start")
 
 
+def end(gateway: subprocess.Popen) -> None:
+    """Ends the gateway, which must succeed."""
+    gateway.terminate()
+    if gateway.wait(60) != 0:
+        raise SystemExit(f"the gateway ended with {gateway.returncode}")
+
+
 def run(commands: str, port: str, folder: pathlib.Path) -> list[re.Match]:
     """Runs the commands until enough lines were promised; returns those lines."""
     script = "set -e\n" + commands.replace("8081", port)
@@ -86,8 +93,7 @@ def check_endings(program: pathlib.Path, interpreter: str, binary: str) -> None:
         interrupted.send_signal(signal.SIGINT)
         expect(interrupted, 0, f"{name}: stopped")
     finally:
-        gateway.terminate()
-        gateway.wait()
+        end(gateway)
     expect(left, 1, f"{name}: the gateway has ended the connection")
 
 
@@ -164,8 +170,7 @@ def main() -> None:
                 check_against_vectors(language, marked[file], repository, folder)
                 check_endings(folder / file, interpreter, binary)
         finally:
-            gateway.terminate()
-            gateway.wait()
+            end(gateway)
     if len(lines) < SWEEPS:
         raise SystemExit(f"{len(lines)} sweeps of {SWEEPS} came")
     sequences = [int(line[1]) for line in lines]

@@ -1,10 +1,13 @@
 #include "tests/support/process.hpp"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <fcntl.h>
+#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <poll.h>
@@ -49,7 +52,11 @@ int milliseconds_until(Clock::time_point deadline) {
 
 }  // namespace
 
-Process::Process(const std::vector<std::string>& arguments) {
+Process::Process(const std::vector<std::string>& arguments)
+    : name_(std::filesystem::path(arguments.front()).filename()) {
+    if (arguments.size() > 1) {
+        name_ += " " + arguments[1];
+    }
     std::vector<char*> argv;
     for (const auto& argument : arguments) {
         argv.push_back(const_cast<char*>(argument.c_str())
@@ -88,30 +95,61 @@ Process::Process(const std::vector<std::string>& arguments) {
 
 Process::~Process() {
     if (pid_ > 0) {
-        kill(pid_, SIGKILL);
-        waitpid(pid_, nullptr, 0);
+        if (const auto fault = end(); !fault.empty()) {
+            ADD_FAILURE() << name_ << " " << fault << "; its log ends with:\n" << err_.unread;
+        }
     }
     close(out_.descriptor);
     close(err_.descriptor);
 }
 
-void Process::signal(int number) const {
+void Process::signal(int number) {
     kill(pid_, number);
+    signalled_ = number;
 }
 
 int Process::wait() {
-    const auto deadline = Clock::now() + patience;
+    if (!read_to_end(Clock::now() + patience)) {
+        throw std::runtime_error(name_ + " does not end; its log ends with:\n" + err_.unread);
+    }
+    return reap();
+}
+
+bool Process::read_to_end(Deadline deadline) {
     while (!out_.ended || !err_.ended) {
         if (!read_more(deadline)) {
-            throw std::runtime_error(
-                "the program does not end; its log ends with:\n" + err_.unread
-            );
+            return false;
         }
     }
+    return true;
+}
+
+int Process::reap() {
     int status = 0;
     waitpid(pid_, &status, 0);
     pid_ = -1;
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+std::string Process::end() {
+    kill(pid_, SIGTERM);
+    if (signalled_ == SIGSTOP) {
+        // A stopped process sees no other signal. Only then: a process that runs may be in the
+        // middle of its leak check, where SIGCONT takes away the SIGSTOP that the check waits for.
+        kill(pid_, SIGCONT);
+    }
+    if (!read_to_end(Clock::now() + patience)) {
+        kill(pid_, SIGKILL);
+        reap();
+        return "did not end after SIGTERM";
+    }
+    const int status = reap();
+    const bool as_told = status == 128 + SIGTERM || (signalled_ != 0 && status == 128 + signalled_);
+    if (status == 0 || as_told) {
+        return "";
+    }
+    return status > 128 ? "died of signal " + std::to_string(status - 128)
+                        : "ended with exit status " + std::to_string(status);
 }
 
 std::string Process::rest_of_output() {

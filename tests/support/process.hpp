@@ -1,5 +1,5 @@
 // Process: runs a program as a user would, reads what it prints, signals it, and waits for it.
-// Nothing outlives the test.
+// No process outlives its test, and none ends abnormally without the test failing.
 #pragma once
 
 #include <chrono>
@@ -18,7 +18,9 @@ public:
     /// Starts `arguments[0]`. Standard output and standard error are kept. No signal is ignored at
     /// the start, whatever this process ignores.
     explicit Process(const std::vector<std::string>& arguments);
-    /// Kills it if it still runs.
+    /// Ends the program by SIGTERM if it still runs. The test fails, and shows the log, if the
+    /// program does not end in time, or ends with an exit status other than 0. The program may die
+    /// of SIGTERM, or of a signal that the test itself sent.
     ~Process();
     Process(const Process&) = delete;
     Process& operator=(const Process&) = delete;
@@ -29,7 +31,7 @@ public:
     /// The same for standard error, where the log goes.
     std::string wait_for_log(const std::string& text) { return wait_for_line(err_, text); }
 
-    void signal(int number) const;
+    void signal(int number);
 
     /// Waits for the end and returns the exit code, or 128 + the signal's number. Throws if it does
     /// not end in time.
@@ -55,7 +57,15 @@ private:
     /// Reads what both pipes have, waiting for some until the deadline. False if the deadline
     /// passed.
     bool read_more(Deadline deadline);
+    /// Reads until both pipes have ended. False if the deadline passed.
+    bool read_to_end(Deadline deadline);
+    /// Reaps the program. Returns its exit status, or 128 + the number of the signal it died of.
+    int reap();
+    /// Ends the program; returns what is wrong with how it ended, or an empty string.
+    std::string end();
 
+    std::string name_;
+    int signalled_{};  ///< the last signal that the test sent
     pid_t pid_{-1};
     Pipe out_;
     Pipe err_;

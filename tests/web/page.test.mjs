@@ -493,7 +493,7 @@ if (binary) {
   test("a lost connection shows, and the drawing with it", async () => {
     await open(DESKTOP);
     await startScanning();
-    await gateway.kill();
+    await gateway.crash();
     await page.waitForSelector("#banner:not([hidden])");
     await until(() => /in \d+ s|now/.test(document.getElementById("banner-countdown").textContent));
     await until(() => document.getElementById("stage").classList.contains("stale"));
@@ -730,7 +730,7 @@ async function main() {
       console.log(`FAIL  ${name}\n${error.stack ?? error}`);
     }
   }
-  console.log(`${tests.length - failed} passed, ${failed} failed`);
+  console.log(`cases: ${tests.length - failed} passed, ${failed} failed`);
   return failed === 0;
 }
 
@@ -738,10 +738,14 @@ let ok = false;
 try {
   ok = await main();
 } catch (error) {
-  console.log(`${error.stack ?? error}\n0 passed, 1 failed`);
+  console.log(`${error.stack ?? error}\ncases: 0 passed, 1 failed`);
 } finally {
   await browser?.close();
-  await gateway?.kill();
-  await others?.kill();
+  for (const each of [gateway, others]) {
+    await each?.end().catch((error) => {
+      console.log(String(error));
+      ok = false;
+    });
+  }
 }
 process.exit(ok ? 0 : 1);

@@ -4,6 +4,7 @@ import { once } from "node:events";
 import { createInterface } from "node:readline";
 
 const START_DEADLINE_MS = 60_000;
+const END_DEADLINE_MS = 20_000;
 
 /// A running gateway with these lidars. `address` may name a port to take again after a restart.
 export class Gateway {
@@ -15,7 +16,7 @@ export class Gateway {
     try {
       gateway.url = await gateway.pageAddress();
     } catch (error) {
-      await gateway.kill();
+      await gateway.crash();
       throw error;
     }
     return gateway;
@@ -23,7 +24,7 @@ export class Gateway {
 
   constructor(child) {
     this.child = child;
-    this.exited = new Promise((resolve) => child.once("close", resolve));
+    this.exited = new Promise((resolve) => child.once("close", (status, signal) => resolve(status ?? signal)));
   }
 
   /// "127.0.0.1:PORT"
@@ -31,8 +32,18 @@ export class Gateway {
     return new URL(this.url).host;
   }
 
+  /// Ends it by SIGTERM. Throws if it ends with an error, which includes what a sanitizer reports at the end.
+  async end() {
+    this.child.kill("SIGTERM");
+    const late = setTimeout(() => this.child.kill("SIGKILL"), END_DEADLINE_MS);
+    const status = await this.exited;
+    clearTimeout(late);
+    if (status !== 0 && !this.crashed) throw new Error(`the gateway ended with ${status}`);
+  }
+
   /// Ends it at once, as a crash or a power cut would.
-  async kill() {
+  async crash() {
+    this.crashed = true;
     this.child.kill("SIGKILL");
     await this.exited;
   }

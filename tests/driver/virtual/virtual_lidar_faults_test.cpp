@@ -263,13 +263,10 @@ TEST_F(VirtualLidarFaults, WithEthernetOfItsOwnItIsThereAgainAtTheSameAddress) {
     });
 }
 
+// Not with UBSan, which looks at objects through a pipe and takes a lack of descriptors for an
+// invalid object.
+#ifndef SWEEPCAST_WITH_UBSAN
 TEST_F(VirtualLidarFaults, OnTheNetworkItDoesNotSpinWhenDescriptorsRunOut) {
-#if defined(__has_feature)
-#if __has_feature(undefined_behavior_sanitizer)
-    GTEST_SKIP() << "UBSan looks at objects through a pipe, and takes a lack of descriptors for "
-                    "one that is invalid";
-#endif
-#endif
     create({.listen = "tcp://127.0.0.1:0"});
     const auto address = parse_listen_address(lidar_->port(), Connection::serial);
     ip::tcp::socket host(context_);
@@ -293,6 +290,7 @@ TEST_F(VirtualLidarFaults, OnTheNetworkItDoesNotSpinWhenDescriptorsRunOut) {
         EXPECT_EQ(co_await read(host, health_good.size()), health_good);
     });
 }
+#endif
 
 TEST_F(VirtualLidarFaults, AScheduleIsObeyedByItself) {
     const auto link = folder_.path("lidar");

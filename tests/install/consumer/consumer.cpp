@@ -35,7 +35,7 @@ int main(int argc, char** argv) {
                   << scan->scan.sweep.samples.size() << " samples";
         if (nearest != echoes.end()) {
             std::cout << ", nearest " << nearest->distance.millimetres() << " mm at "
-                      << nearest->angle.degrees() << " degrees";
+                      << scan->scan.degrees(*nearest) << " degrees";
         }
         std::cout << std::endl;
     }

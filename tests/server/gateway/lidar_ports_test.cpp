@@ -3,6 +3,7 @@
 
 #include "driver/virtual/virtual_lidar.hpp"
 #include "tests/driver/link/scratch_directory.hpp"
+#include "tests/support/process.hpp"
 
 #include <boost/asio/post.hpp>
 #include <gtest/gtest.h>
@@ -12,7 +13,6 @@
 
 #include <array>
 #include <chrono>
-#include <fstream>
 #include <future>
 #include <iostream>
 #include <memory>
@@ -269,8 +269,11 @@ TEST_F(LidarSearchTest, DoesNotGiveAVacantPlaceToALidarOfAnotherPlace) {
 
 TEST_F(LidarSearchTest, LeavesAPortAloneThatSomebodyHasOpen) {
     plug("in use", ours);
-    std::fstream user(path("in use"));
-    ASSERT_TRUE(user.is_open());
+    // Another process: the one that plays the lidar may have its port open.
+    test::Process user(
+        {"/bin/sh", "-c", R"(exec 3<>"$1"; echo open; exec sleep 1000)", "sh", path("in use")}
+    );
+    user.wait_for_output("open");
     start();
     wait_for_anybody();
     plug("new", other);
