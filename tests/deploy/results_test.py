@@ -1,118 +1,88 @@
 #!/usr/bin/env python3
-"""Tests of deploy/lib/results.sh: totals over the JUnit files of ctest."""
+"""Tests of deploy/lib/results.py: what is counted and shown of a run of ctest."""
 
+import json
 import subprocess
 import tempfile
 import unittest
 from pathlib import Path
 
-RESULTS = Path(__file__).resolve().parents[2] / "deploy/lib/results.sh"
+RESULTS = Path(__file__).resolve().parents[2] / "deploy/lib/results.py"
 
-# As ctest 3.25 writes them.
-PASSED = '<testcase name="a" classname="a" time="0.1" status="run">\n\t\t<system-out></system-out>'
-FAILED = '<testcase name="b" classname="b" time="0.1" status="fail">\n\t\t<failure message=""/>\n\t\t<system-out></system-out>'
-CHOSE_NOT_TO_RUN = '<testcase name="c" classname="c" time="0" status="notrun">\n\t\t<skipped message="SKIP_RETURN_CODE=77"/>'
-MISSING = '<testcase name="d" classname="d" time="0" status="notrun">\n\t\t<skipped message="Unable to find executable"/>'
-NEEDED_WHAT_FAILED = '<testcase name="e" classname="e" time="0" status="notrun">\n\t\t<skipped message="Fixture dependency failed"/>'
-DISABLED = '<testcase name="f" classname="f" time="0" status="disabled">\n\t\t<system-out>Disabled</system-out>'
+
+def case(name, status, output="", inside=""):
+    """A test case as ctest 3.25 writes it."""
+    return f'<testcase name="{name}" classname="{name}" time="0.1" status="{status}">{inside}<system-out>{output}</system-out></testcase>'
+
+
+PASSED = case("a", "run")
+FAILED = case("b", "fail", "b.cpp:3: Failure", '<failure message=""/>')
+CASES_PASSED = case("c", "run", "cases: 12 passed, 0 failed\n")
+CASES_FAILED = case("d", "fail", "D.Works: FAILED\n\ncases: 12 passed, 3 failed\n", '<failure message=""/>')
+FAILED_AFTER_ITS_CASES = case("e", "fail", "cases: 12 passed, 0 failed\n", '<failure message=""/>')
+SKIPPED = case("f", "notrun", "", '<skipped message="SKIP_RETURN_CODE=77"/>')
+NOT_BUILT = case("g", "notrun", "", '<skipped message="Unable to find executable"/>')
+DISABLED = case("h", "disabled", "Disabled")
 # A test whose output looks like results: ctest escapes it.
-SAYS_IT_FAILED = PASSED.replace("<system-out>", '<system-out>&lt;testcase name="x" status="fail"&gt;\nstatus="disabled"\n')
-
-CTEST_LOG = """Test project build/dev
-      Start  1: Good.Test
-      Start  2: Bad.Test
- 1/3 Test  #1: Good.Test ..............   Passed    0.01 sec
- 2/3 Test  #2: Bad.Test ...............***Failed    0.02 sec
-bad_test.cpp:3: Failure
-Expected: 1
-
-      Start  3: Slow.Test
- 3/3 Test  #3: Slow.Test ..............***Timeout  10.00 sec
-
-33% tests passed, 2 tests failed out of 3
-
-Total Test time (real) =  10.03 sec
-
-The following tests FAILED:
-\t  2 - Bad.Test (Failed)
-\t  3 - Slow.Test (Timeout)
-Errors while running CTest
-"""
-SHOWN = """     2/3 Test  #2: Bad.Test ***Failed    0.02 sec
-    bad_test.cpp:3: Failure
-    Expected: 1
-    
-     3/3 Test  #3: Slow.Test ***Timeout  10.00 sec
-    
-    The following tests FAILED:
-    \t  2 - Bad.Test (Failed)
-    \t  3 - Slow.Test (Timeout)
-"""
+SAYS_IT_FAILED = case("i", "run", "&lt;testcase name=&quot;x&quot; status=&quot;fail&quot;&gt;")
 
 
 class ResultsTest(unittest.TestCase):
-    def totals(self, *runs):
-        """What count_results makes of these runs, each a list of test cases: (passed, failed, skipped)."""
-        with tempfile.TemporaryDirectory() as folder:
-            script = f'set -euo pipefail; source "{RESULTS}"\n'
-            for number, cases in enumerate(runs):
-                file = Path(folder) / f"{number}.xml"
-                body = "".join(f"\t{case}\n\t</testcase>\n" for case in cases)
-                file.write_text(f'<?xml version="1.0"?>\n<testsuite name="x">\n{body}</testsuite>\n', encoding="utf-8")
-                script += f'count_results "{file}"\n'
-            script += "echo $passed $failed $skipped"
-            done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
-        return tuple(int(number) for number in done.stdout.split())
+    def judge(self, cases, registered=None, reports=()):
+        """What results.py makes of a run with these test cases: ((passed, failed), what it shows)."""
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = Path(scratch)
+            if cases is not None:
+                (folder / "junit").write_text(f"<testsuite>{''.join(cases)}</testsuite>", encoding="utf-8")
+            names = registered if registered is not None else [each.split('"')[1] for each in cases]
+            (folder / "registered").write_text(json.dumps({"tests": [{"name": name} for name in names]}), encoding="utf-8")
+            (folder / "reports").mkdir()
+            for number, report in enumerate(reports):
+                (folder / "reports" / f"asan.{number}").write_text(report, encoding="utf-8")
+            command = [RESULTS, folder / "junit", folder / "registered", folder / "reports"]
+            run = subprocess.run(command, capture_output=True, text=True, check=True)
+        return tuple(map(int, run.stdout.split())), run.stderr
 
-    def test_each_kind_of_result_has_its_column(self):
-        self.assertEqual(self.totals([PASSED, PASSED, FAILED, CHOSE_NOT_TO_RUN, DISABLED]), (2, 1, 2))
+    def test_passed_and_failed_tests_are_counted(self):
+        self.assertEqual(self.judge([PASSED, PASSED, FAILED])[0], (2, 1))
 
-    def test_a_test_that_could_not_run_is_a_failure(self):
-        self.assertEqual(self.totals([MISSING, NEEDED_WHAT_FAILED]), (0, 2, 0))
+    def test_a_test_counts_as_often_as_it_has_cases(self):
+        self.assertEqual(self.judge([CASES_PASSED, CASES_FAILED])[0], (24, 3))
 
-    def test_runs_add_up(self):
-        self.assertEqual(self.totals([PASSED], [PASSED, FAILED], []), (2, 1, 0))
+    def test_a_program_that_fails_after_its_cases_passed_has_failed(self):
+        self.assertEqual(self.judge([FAILED_AFTER_ITS_CASES])[0], (12, 1))
 
-    def test_what_a_test_prints_does_not_count(self):
-        self.assertEqual(self.totals([SAYS_IT_FAILED]), (1, 0, 0))
+    def test_a_test_that_did_not_run_is_a_failure_whatever_the_reason(self):
+        self.assertEqual(self.judge([SKIPPED, NOT_BUILT, DISABLED])[0], (0, 3))
 
-    def may_have_been_late(self, cases, log):
-        """Whether failures of these test cases may be put down to a busy machine, this being ctest's log."""
-        with tempfile.TemporaryDirectory() as folder:
-            junit, text = Path(folder) / "junit", Path(folder) / "log"
-            junit.write_text("".join(f"\t{case}\n\t</testcase>\n" for case in cases), encoding="utf-8")
-            text.write_text(log, encoding="utf-8")
-            script = f'source "{RESULTS}"; may_have_been_late "{junit}" "{text}"'
-            return subprocess.run(["bash", "-c", script], check=False).returncode == 0
+    def test_a_registered_test_that_is_missing_is_a_failure(self):
+        totals, shown = self.judge([PASSED], registered=["a", "forgotten"])
+        self.assertEqual(totals, (1, 1))
+        self.assertIn("forgotten did not run", shown)
 
-    def test_three_tests_at_most_may_have_been_late(self):
-        self.assertTrue(self.may_have_been_late([PASSED, FAILED], CTEST_LOG))
-        self.assertTrue(self.may_have_been_late([FAILED] * 3, CTEST_LOG))
-        self.assertFalse(self.may_have_been_late([FAILED] * 4, CTEST_LOG))
-        self.assertFalse(self.may_have_been_late([PASSED, SAYS_IT_FAILED], CTEST_LOG))
+    def test_a_run_without_results_is_a_failure(self):
+        self.assertEqual(self.judge(None, registered=["a"])[0], (0, 1))
 
-    def test_what_a_sanitizer_reports_is_never_put_down_to_lateness(self):
-        for report in ("ERROR: AddressSanitizer: heap-use-after-free", "a.cpp:1:2: runtime error: index 9 out of bounds"):
-            self.assertFalse(self.may_have_been_late([FAILED], CTEST_LOG + report))
+    def test_a_run_without_tests_is_a_failure(self):
+        self.assertEqual(self.judge([], registered=[])[0], (0, 1))
 
-    def failures(self, log):
-        """What show_failures prints of this log of ctest."""
-        with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder) / "log"
-            file.write_text(log, encoding="utf-8")
-            command = ["bash", "-c", f'set -euo pipefail; source "{RESULTS}"; show_failures "{file}"']
-            return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    def test_a_sanitizers_report_is_a_failure_though_every_test_passed(self):
+        totals, shown = self.judge([PASSED], reports=["ERROR: AddressSanitizer: heap-use-after-free"])
+        self.assertEqual(totals, (1, 1))
+        self.assertIn("heap-use-after-free", shown)
+
+    def test_what_a_test_prints_is_no_result(self):
+        self.assertEqual(self.judge([SAYS_IT_FAILED])[0], (1, 0))
 
     def test_only_what_failed_is_shown(self):
-        self.assertEqual(self.failures(CTEST_LOG), SHOWN)
+        shown = self.judge([PASSED, FAILED, CASES_PASSED])[1]
+        self.assertEqual(shown, "b failed:\n    b.cpp:3: Failure\n")
 
-    def test_of_a_test_that_says_much_the_beginning_is_shown_and_the_tests_after_it(self):
-        chatty = CTEST_LOG.replace("Expected: 1\n", "Expected: 1\n" * 1000)
-        shown = self.failures(chatty)
-        self.assertEqual(shown.count("Expected: 1"), 298)
-        self.assertIn("    ... (the rest is in the log)\n", shown)
-        self.assertIn("#3: Slow.Test ***Timeout", shown)
-        self.assertTrue(shown.endswith("\t  3 - Slow.Test (Timeout)\n"))
+    def test_the_beginning_and_the_end_of_a_long_output_are_shown(self):
+        shown = self.judge([case("j", "fail", "first\n" + "more\n" * 1000 + "last\n")])[1]
+        self.assertIn("    first\n", shown)
+        self.assertIn("    last\n", shown)
+        self.assertEqual(shown.count("more"), 298)
 
 
 if __name__ == "__main__":
