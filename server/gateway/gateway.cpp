@@ -114,11 +114,15 @@ Gateway::start(GatewayOptions options, const MakeLogger& make_logger) {
         return std::move(*problem);
     }
     std::unique_ptr<Gateway> gateway(new Gateway(std::move(options), make_logger));
+    // First what the options say: a wrong option is named even if another program has the ports.
+    if (auto added = gateway->add_lidars(make_logger); !added) {
+        return added.error();
+    }
     if (auto listening = gateway->listen(make_logger); !listening) {
         return listening.error();
     }
-    if (auto added = gateway->add_lidars(make_logger); !added) {
-        return added.error();
+    if (auto problem = gateway->own_upstream()) {
+        return std::move(*problem);
     }
     for (auto& lidar : gateway->lidars_) {
         lidar->start();
@@ -204,9 +208,7 @@ Result<void, Problem> Gateway::add_lidars(const MakeLogger& make_logger) {
     for (const auto& url : options_.lidars) {
         const auto number = static_cast<std::uint32_t>(lidars_.size() + 1);
         if (const auto* remote = std::get_if<RemoteLidarUrl>(&url.where)) {
-            if (auto added = add_remote(url, *remote, make_logger); !added) {
-                return added.error();
-            }
+            add_remote(url, *remote, make_logger);
             continue;
         }
         auto where = place(url, number, make_logger);
@@ -241,17 +243,25 @@ bool Gateway::is_own(const RemoteLidarUrl& remote) const {
     return is_here && remote.port == std::to_string(tcp_->endpoint().port());
 }
 
-Result<void, Problem> Gateway::add_remote(
+/// What is wrong if a lidar is to come from this gateway itself.
+std::optional<Problem> Gateway::own_upstream() const {
+    for (const auto& url : options_.lidars) {
+        const auto* remote = std::get_if<RemoteLidarUrl>(&url.where);
+        if (remote != nullptr && is_own(*remote)) {
+            return Problem{
+                make_error_code(boost::system::errc::too_many_symbolic_link_levels),
+                fmt::format("lidar \"{}\" is at this gateway's own stream", url.text),
+                "name another gateway, or the lidar's port"};
+        }
+    }
+    return std::nullopt;
+}
+
+void Gateway::add_remote(
     const LidarUrl& url,
     const RemoteLidarUrl& remote,
     const MakeLogger& make_logger
 ) {
-    if (is_own(remote)) {
-        return Problem{
-            make_error_code(boost::system::errc::too_many_symbolic_link_levels),
-            fmt::format("lidar \"{}\" is at this gateway's own stream", url.text),
-            "name another gateway, or the lidar's port"};
-    }
     const auto number = static_cast<std::uint32_t>(lidars_.size() + 1);
     const auto& wished = url.name.empty() ? port_name(url) : url.name;
     const auto name = ids_.claim(number, wished, wished);
@@ -262,7 +272,6 @@ Result<void, Problem> Gateway::add_remote(
         ids_,
         make_logger("lidar " + name)
     ));
-    return {};
 }
 
 /// The device's options, with what the lidar's own URL says of them.

@@ -21,6 +21,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -71,9 +72,10 @@ private:
 
     Result<void, Problem> add_lidars(const MakeLogger& make_logger);
     [[nodiscard]] device::DeviceOptions options_for(const LidarUrl& url) const;
-    Result<void, Problem>
+    void
     add_remote(const LidarUrl& url, const RemoteLidarUrl& remote, const MakeLogger& make_logger);
     [[nodiscard]] bool is_own(const RemoteLidarUrl& remote) const;
+    [[nodiscard]] std::optional<Problem> own_upstream() const;
     Result<LidarPlace, Problem>
     place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make_logger);
     Result<void, Problem> listen(const MakeLogger& make_logger);

@@ -113,6 +113,14 @@ TEST_P(MisuseTest, ExitsWithTwoAndSaysWhatIsWrongOnStandardError) {
     EXPECT_EQ(outcome.output, "");
 }
 
+TEST(CommandLine, AWrongLidarIsNamedEvenIfThePortsAreTaken) {
+    const GatewayProcess first({"--lidar", "virtual:a1m8"});
+    const auto outcome =
+        call({"serve", "--lidar", "virtual:z9", "--http", first.http, "--tcp", first.tcp});
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.log, HasSubstr("z9"));
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Calls,
     MisuseTest,
