@@ -10,6 +10,7 @@ import os
 import pathlib
 import re
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -84,7 +85,9 @@ def check_endings(program: pathlib.Path, interpreter: str, binary: str) -> None:
         )
 
     expect(start(), 2, f"usage: {name} HOST PORT")
-    expect(start("127.0.0.1", "1"), 1, f"{name}: .*(refused|REFUSED).*")
+    with socket.socket() as nobody:  # bound and not listening, so that nobody else can have the port
+        nobody.bind(("127.0.0.1", 0))
+        expect(start("127.0.0.1", str(nobody.getsockname()[1])), 1, f"{name}: .*(refused|REFUSED).*")
     gateway, port = start_gateway(binary)
     interrupted, left = start("127.0.0.1", port), start("127.0.0.1", port)
     try:

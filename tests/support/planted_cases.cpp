@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <spawn.h>
 #include <string>
@@ -56,6 +57,11 @@ TEST(Planted, Case) {
         std::raise(SIGSEGV);
     } else if (planted("hang")) {
         pause();
+    } else if (planted("noisy hang")) {
+        for (;;) {
+            std::puts("still here");
+            std::fflush(stdout);
+        }
     } else if (planted("leak")) {
         leak();
     } else if (planted("use after free")) {

@@ -29,7 +29,10 @@ STARTED = re.compile(r"\[ RUN      \] (\S+)")
 ENDED = re.compile(r"\[ +(OK|FAILED|SKIPPED) +\] ([^\s,]+)(?:, where .*)? \(\d+ ms\)$")
 # How much of a failed case's output is shown: its beginning and its end.
 LINES_SHOWN = 300
+LINES_KEPT = 10 * LINES_SHOWN
 CHARACTERS_SHOWN = 400
+# How long an aborted program may take to end.
+END_TIMEOUT_S = 10
 
 
 @dataclass
@@ -76,7 +79,7 @@ class Run:
         self.case_timeout = case_timeout
         self.current: Case | None = None
         self.around: list[str] = []  # what was printed outside of any case
-        self.aborted = False
+        self.aborted = self.killed = False
         self.process = subprocess.Popen(
             command, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors="replace"
         )
@@ -86,7 +89,8 @@ class Run:
         self.read_all()
         status = self.process.wait()
         if self.current is not None:
-            self.current.result = f"FAILED: {self.ending(status)} during this case"
+            late = f"no end after {self.case_timeout:.0f} s; " if self.aborted else ""
+            self.current.result = f"FAILED: {late}{self.ending(status)} during this case"
             self.current = None
         elif status != 0 and not any(case.result == "FAILED" for case in self.cases.values()):
             # All cases passed, and then something went wrong: a leak, a crash of a destructor.
@@ -97,10 +101,12 @@ class Run:
         selector = selectors.DefaultSelector()
         selector.register(self.process.stdout, selectors.EVENT_READ)
         buffered, deadline = "", time.monotonic() + self.case_timeout
-        while True:
-            if not selector.select(max(0.0, deadline - time.monotonic())):
+        while not self.killed:
+            ready = selector.select(max(0.0, deadline - time.monotonic()))
+            if time.monotonic() >= deadline:  # a case that hangs may print all the while
                 self.give_up()
-                deadline = time.monotonic() + 10
+                deadline = time.monotonic() + END_TIMEOUT_S
+            if not ready:
                 continue
             chunk = self.process.stdout.read()
             if not chunk:
@@ -114,9 +120,13 @@ class Run:
 
     def give_up(self) -> None:
         """Ends a process whose case takes too long: first with SIGABRT, then for good."""
-        self.add(f"(no end after {self.case_timeout:.0f} s)")
-        self.process.send_signal(signal.SIGKILL if self.aborted else signal.SIGABRT)
-        self.aborted = True
+        if self.aborted:
+            # Its children may keep the pipe open, so nothing more is read.
+            self.process.kill()
+            self.killed = True
+        else:
+            self.process.send_signal(signal.SIGABRT)
+            self.aborted = True
 
     def enter(self, line: str) -> bool:
         """Enters one line; gives back whether a case began or ended with it."""
@@ -133,7 +143,10 @@ class Run:
         return False
 
     def add(self, line: str) -> None:
-        (self.around if self.current is None else self.current.output).append(line)
+        output = self.around if self.current is None else self.current.output
+        output.append(line)
+        if len(output) > LINES_KEPT:
+            output[LINES_SHOWN:-LINES_SHOWN] = ["..."]
 
     def fail_last(self, result: str) -> None:
         ran = [case for case in self.cases.values() if case.result != "did not run"]

@@ -53,6 +53,9 @@ class RunCasesTest(unittest.TestCase):
     def test_a_case_that_hangs_is_ended(self):
         self.assertIn("no end after 1 s", self.assert_fails("hang", "--case-timeout", "1"))
 
+    def test_a_case_that_hangs_and_prints_is_ended_too(self):
+        self.assertIn("no end after 1 s", self.assert_fails("noisy hang", "--case-timeout", "1"))
+
     def test_a_program_that_ends_in_the_middle_of_a_case_is_no_success(self):
         self.assert_fails("end")
 
