@@ -88,6 +88,7 @@ TEST_F(ControlTest, TheLatestSweepIsThereAsJsonAndCsv) {
 TEST(Control, StartTakesTheIdOfAModeAsANumber) {
     VirtualLidarProcess listing({"--model", "s2"});
     GatewayProcess here({"--lidar", listing.port + "?name=s2"});
+    Subscriber("tcp://" + here.tcp).wait_for_state(v1::Lidar::SCANNING);
     const auto answer = http(here.http, "POST", "/api/v1/lidars/s2/start", R"({"mode": 0})");
     EXPECT_EQ(answer.status, 200);
     EXPECT_THAT(answer.body, HasSubstr("\"mode\": \"Standard\""));
