@@ -57,6 +57,16 @@ INSTANTIATE_TEST_SUITE_P(
             "\xef\xbb\xbf"
             "a",
             "\\ufeffa"},
+        PrintableCase{
+            "zero_width",
+            "a\xe2\x80\x8b\xe2\x80\x8c\xe2\x80\x8d\xe2\x81\xa0",
+            "a\\u200b\\u200c\\u200d\\u2060"},
+        PrintableCase{"soft_hyphen", "a\xc2\xad", "a\\u00ad"},
+        PrintableCase{"filler", "a\xe3\x85\xa4", "a\\u3164"},
+        PrintableCase{"variation_selector", "a\xef\xb8\x8f", "a\\ufe0f"},
+        PrintableCase{"tags", "\xf3\xa0\x80\x81\xf3\xa0\x81\xbf", "\\udb40\\udc01\\udb40\\udc7f"},
+        PrintableCase{"visible_beside_invisible", "\xe2\x80\x90\xe2\x81\xb0", "\u2010\u2070"},
+        PrintableCase{"json", R"({"a": "b\n\u0001"})", R"({"a": "b\n\u0001"})"},
         PrintableCase{"lone_continuation", "a\x80", "a\\x80"},
         PrintableCase{"cut_short", "\xf0\x9f\xa4", "\\xf0\\x9f\\xa4"},
         PrintableCase{
@@ -72,6 +82,27 @@ INSTANTIATE_TEST_SUITE_P(
     ),
     [](const auto& test) { return test.param.name; }
 );
+
+TEST(PrintableStart, ReturnsAShortTextWholeAndWithoutTheMark) {
+    EXPECT_EQ(printable_start("", 3, "..."), "");
+    EXPECT_EQ(printable_start("abc", 3, "..."), "abc");
+    EXPECT_EQ(printable_start("\x1b", 6, "..."), "\\u001b");
+}
+
+TEST(PrintableStart, EndsALongTextWithTheMark) {
+    EXPECT_EQ(printable_start("abcd", 3, "..."), "abc...");
+    EXPECT_EQ(printable_start("abcd", 3), "abc");
+}
+
+TEST(PrintableStart, CutsNoCharacter) {
+    EXPECT_EQ(printable_start("aé", 2, "..."), "a...");
+    EXPECT_EQ(printable_start("🤖", 3, "..."), "...");
+}
+
+TEST(PrintableStart, CountsAndCutsNoEscape) {
+    EXPECT_EQ(printable_start("\x1b\x1b", 11, "..."), "\\u001b...");
+    EXPECT_EQ(printable_start("\xff\xff", 7, "..."), "\\xff...");
+}
 
 }  // namespace
 }  // namespace sweepcast::protocol
