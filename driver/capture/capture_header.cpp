@@ -35,7 +35,7 @@ std::string text_of(const json::object& object, std::string_view key) {
         return {};
     }
     const std::string_view text = value->get_string();
-    return protocol::printable(text.substr(0, longest_text));
+    return protocol::printable_start(text, longest_text);
 }
 
 /// A whole number from 0 to `most`; nullopt if there is none or another.

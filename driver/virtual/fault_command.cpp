@@ -74,8 +74,7 @@ constexpr std::array incidents{
 // Returns the beginning of a command from anywhere, for a problem that quotes it.
 std::string shown(std::string_view text) {
     constexpr std::size_t most = 64;
-    const auto out = protocol::printable(text.substr(0, most));
-    return text.size() > most ? out + "..." : out;
+    return protocol::printable_start(text, most, "...");
 }
 
 Problem not_a_command(std::string_view text) {

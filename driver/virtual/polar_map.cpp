@@ -29,8 +29,7 @@ std::optional<double> parse_number(std::string_view text) {
 // Returns the beginning of an input, for a problem that quotes it.
 std::string quoted(std::string_view text) {
     constexpr std::size_t longest = 40;
-    const auto* const end = text.size() > longest ? "...\"" : "\"";
-    return "\"" + protocol::printable(text.substr(0, longest)) + end;
+    return "\"" + protocol::printable_start(text, longest, "...") + "\"";
 }
 
 // A line's point, or what is wrong with the line.

@@ -11,6 +11,7 @@ namespace sweepcast::capture {
 namespace {
 
 using namespace std::chrono_literals;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -60,6 +61,17 @@ TEST(CaptureHeaderTest, OfALongTextTheBeginningIsKept) {
     const auto read = header_from_json(to_json(header));
     ASSERT_TRUE(read);
     EXPECT_EQ(read->mode, std::string(256, 'x'));
+}
+
+TEST(CaptureHeaderTest, ALongTextIsCutBetweenCharacters) {
+    auto header = full_header();
+    header.mode = std::string(255, 'x') + "é";
+    header.model = std::string(5000, '\x1b');
+    const auto read = header_from_json(to_json(header));
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->mode, std::string(255, 'x'));
+    EXPECT_THAT(read->model, EndsWith("\\u001b"));
+    EXPECT_LE(read->model.size(), 256U);
 }
 
 class BadHeaderTest : public testing::TestWithParam<const char*> {};

@@ -55,7 +55,7 @@ TEST(ParseFaultCommand, TakesSpacesAndUsualValues) {
 
 struct Mistake {
     std::string text;
-    const char* cause;
+    std::string cause;
     const char* hint;
 };
 
@@ -75,6 +75,8 @@ TEST(ParseFaultCommand, SaysWhatIsWrongAndWhatCanBeWritten) {
              Mistake{"protection-stop=", "protection-stop=", "0x8001"},
              Mistake{std::string("\x1b[31m\n"), "\\u001b[31m", "unplug"},
              Mistake{std::string(2000, 'x'), "xxx...", "1024"},
+             Mistake{std::string(63, 'x') + "éa", "\"" + std::string(63, 'x') + "...\"", "unplug"},
+             Mistake{std::string(500, '\x1b'), "\\u001b...", "unplug"},
          }) {
         const auto parsed = parse_fault_command(text);
         ASSERT_FALSE(parsed) << text;

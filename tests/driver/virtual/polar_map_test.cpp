@@ -86,7 +86,7 @@ TEST(PolarMap, TakesDistanceZeroForNoEcho) {
 struct BadFile {
     const char* name;
     std::string text;
-    const char* cause;
+    std::string cause;
 };
 void PrintTo(const BadFile& file, std::ostream* out) {
     *out << file.name;
@@ -131,6 +131,10 @@ INSTANTIATE_TEST_SUITE_P(
             header + "\x1b[2J,1\n",
             "the angle \"\\u001b[2J\" is not a number"},
         BadFile{"zeros", std::string(100, '\0'), "line 1: expected the header"},
+        BadFile{
+            "cut_in_a_character",
+            header + std::string(39, 'x') + "éa,1\n",
+            "\"" + std::string(39, 'x') + "...\" is not a number"},
         BadFile{"long_line", header + std::string(5000, 'x') + ",1\n", "xxx...\" is not a number"}
     ),
     [](const auto& test) { return std::string(test.param.name); }
