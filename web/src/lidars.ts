@@ -26,8 +26,8 @@ export class Lidars {
     lidars.forEach((lidar) => this.put(lidar));
   }
 
-  /// One that is new or has changed. A new one beyond the bound is left out. Of the names that a
-  /// lidar had, the present and the one before are kept.
+  /// Adds a lidar or replaces its earlier state. Ignores a new lidar if there are MOST_LIDARS
+  /// already. find() knows a lidar's current id and the id before that, but no older ones.
   put(lidar: Lidar): void {
     if (!this.byNumber.has(lidar.number) && this.byNumber.size >= MOST_LIDARS) return;
     const before = this.byNumber.get(lidar.number)?.id;
