@@ -40,8 +40,9 @@ private:
 };
 
 /// A header line, then one line per sample: lidar,sequence,unix_ns,angle_deg,distance_mm,quality,
-/// flag; with `sectors` also sector, after sequence. What is not known, as it was left out, is
-/// empty. Angles and distances have enough digits to give back the lidar's own units exactly.
+/// flag; with `sectors` also sector, after sequence. A field is empty if its value is not
+/// known, for example because the subscription leaves that column out. Angles and distances have
+/// enough digits to give back the lidar's own units exactly.
 [[nodiscard]] std::unique_ptr<WatchOutput> make_csv_output(bool sectors);
 
 /// A line a scan: the LatestScan message of the API as JSON.

@@ -31,9 +31,9 @@ struct DecodedScan {
     std::chrono::nanoseconds gap{};
     /// The unit of the angles on the wire: this many are a full circle.
     std::uint32_t angle_units_per_turn{};
-    /// Columns that are not there. Quality and flag of every sample are 0 then. Without times only
-    /// `first_time` and `first_unix` are known, and `time` of every sample is `first_time`: how far
-    /// apart the samples of a filtered scan are, nothing tells.
+    /// Columns that are missing. Without quality or flags, those of every sample are 0. Without
+    /// times, only `first_time` and `first_unix` are known, and the `time` of every sample is
+    /// `first_time`. The time between two samples of a filtered scan is then unknown.
     bool without_quality{};
     bool without_flags{};
     bool without_times{};
