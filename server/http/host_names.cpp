@@ -91,14 +91,19 @@ bool is_host_name(std::string_view text) {
            std::ranges::all_of(text, [](char c) { return c == '.' || is_name_character(c); });
 }
 
-std::vector<std::string> own_host_names() {
-    boost::system::error_code failed;
-    const auto name = normal(asio::ip::host_name(failed));
-    if (failed || !is_host_name(name)) {
+std::vector<std::string> names_of(std::string_view host_name) {
+    if (!is_host_name(host_name)) {
         return {};
     }
+    const auto name = normal(host_name);
     const auto first = name.substr(0, name.find('.'));
     return {name, first, first + ".local"};
+}
+
+std::vector<std::string> own_host_names() {
+    boost::system::error_code failed;
+    const auto name = asio::ip::host_name(failed);
+    return failed ? std::vector<std::string>{} : names_of(name);
 }
 
 }  // namespace sweepcast::http

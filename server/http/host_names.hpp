@@ -18,7 +18,8 @@ enum class HostCheck : std::uint8_t {
 /// Decides by the Host header whether a request was meant for this gateway. Any web site can have
 /// its own name resolved to the gateway's address (DNS rebinding); a browser then takes the
 /// gateway for that site and lets the site's page control the lidars. Such requests carry the
-/// site's name. Addresses cannot be had that way, and "localhost" never leaves the machine.
+/// site's name. A request to an IP address is safe because DNS takes no part in it. A request to
+/// "localhost" is safe because it never leaves the machine.
 class HostNames {
 public:
     /// Takes the names that are allowed besides addresses, localhost and *.localhost.
@@ -36,8 +37,12 @@ private:
 /// between them, 253 characters at most.
 [[nodiscard]] bool is_host_name(std::string_view text);
 
-/// Returns the names of this machine: its host name, the first part of that, and NAME.local, which
-/// multicast DNS gives it.
+/// Returns the names of a machine with this host name: the host name, its first part, and
+/// FIRST_PART.local, the machine's name in multicast DNS. All are in lower case, without a dot at
+/// the end. Returns no names if `host_name` cannot be a host name.
+[[nodiscard]] std::vector<std::string> names_of(std::string_view host_name);
+
+/// Returns names_of() the host name of this machine.
 [[nodiscard]] std::vector<std::string> own_host_names();
 
 }  // namespace sweepcast::http

@@ -1,12 +1,18 @@
 // HostNames: which Host headers are meant for this gateway.
 #include "server/http/host_names.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
+#include <unistd.h>
 
 namespace sweepcast::http {
 namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
 
 const HostNames hosts({"Robot", "scanner.example.com."});
 
@@ -65,11 +71,25 @@ TEST(HostNames, WhatIsNoHostIsMalformed) {
     EXPECT_EQ(hosts.check(std::string(254, 'a')), HostCheck::malformed);
 }
 
-TEST(HostNames, ThisMachinesOwnNamesAreHostNames) {
-    const HostNames own(own_host_names());
-    for (const auto& name : own_host_names()) {
-        EXPECT_TRUE(is_host_name(name)) << name;
-        EXPECT_EQ(own.check(name + ":8080"), HostCheck::ours) << name;
+TEST(HostNames, AMachineGoesByItsHostNameTheFirstPartAndTheLocalName) {
+    EXPECT_THAT(names_of("Robot.lan."), ElementsAre("robot.lan", "robot", "robot.local"));
+    EXPECT_THAT(names_of("robot"), ElementsAre("robot", "robot", "robot.local"));
+}
+
+TEST(HostNames, AMachineWhoseHostNameIsNoneHasNoNames) {
+    for (const auto* name : {"", ".", "my robot", "rob\xc3\xb6t", "a..b"}) {
+        EXPECT_THAT(names_of(name), IsEmpty()) << name;
+    }
+}
+
+TEST(HostNames, ThisMachinesOwnNamesAreOurs) {
+    std::array<char, 256> name{};
+    ASSERT_EQ(::gethostname(name.data(), name.size() - 1), 0);
+    const auto names = own_host_names();
+    EXPECT_EQ(names.empty(), !is_host_name(name.data())) << name.data();
+    const HostNames own(names);
+    for (const auto& each : names) {
+        EXPECT_EQ(own.check(each + ":8080"), HostCheck::ours) << each;
     }
 }
 
