@@ -143,7 +143,7 @@ int serve(const ServeArguments& arguments) {
     print_addresses(**gateway);
     signals.wait();
     log->info("stopping");
-    (*gateway)->stop();
+    signals.finish([&gateway] { (*gateway)->stop(); });
     log->info("stopped");
     return 0;
 }

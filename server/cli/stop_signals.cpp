@@ -8,6 +8,7 @@
 #include <csignal>
 #include <exception>
 #include <signal.h>  // NOLINT(modernize-deprecated-headers): sigaction is POSIX, not C++
+#include <thread>
 #include <utility>
 
 namespace sweepcast::cli {
@@ -61,14 +62,22 @@ void ignore_write_signals() {
 
 StopSignals::StopSignals() : signals_(context_) {
     add_stop_signals(signals_);
-    signals_.async_wait([this](const boost::system::error_code& cancelled, int) {
+    wait_for_signal();
+}
+
+void StopSignals::wait_for_signal() {
+    signals_.async_wait([this](const boost::system::error_code& cancelled, int signal) {
         if (cancelled) {
             return;
         }
         told_ = true;
-        for (const int signal : command_signals) {
+        if (std::ranges::find(command_signals, signal) == command_signals.end()) {
+            wait_for_signal();
+            return;
+        }
+        for (const int command : command_signals) {
             boost::system::error_code not_held;  // it was ignored at the start
-            signals_.remove(signal, not_held);
+            signals_.remove(command, not_held);
         }
     });
 }
@@ -129,6 +138,28 @@ void StopSignals::wait() {
     while (!told_) {
         context_.run_one();
     }
+}
+
+void StopSignals::finish(const std::function<void()>& work) {
+    /// Runs a context on a thread as long as it exists.
+    class Runner {
+    public:
+        explicit Runner(asio::io_context& context)
+            : context_(context)
+            , thread_([&context] { context.run(); }) {}
+        Runner(const Runner&) = delete;
+        Runner& operator=(const Runner&) = delete;
+        ~Runner() {
+            context_.stop();
+            thread_.join();
+        }
+
+    private:
+        asio::io_context& context_;
+        std::thread thread_;
+    };
+    const Runner watch(context_);
+    work();
 }
 
 }  // namespace sweepcast::cli

@@ -22,9 +22,17 @@ void add_stop_signals(boost::asio::signal_set& signals, int other_use = 0);
 /// and SIGXFSZ (the file is too large).
 void ignore_write_signals();
 
-/// Holds back the signals of add_stop_signals() from the moment it exists, so that none falls
-/// between two steps of a start. A second SIGINT, SIGTERM or SIGQUIT finds the default action again
-/// and ends the program at once. Others do not: a terminal that closes sends SIGHUP more than once.
+/// Catches the signals of add_stop_signals() from the moment it exists, so that no signal is lost
+/// between two steps of a start. The first signal stops the program in an orderly way. While the
+/// program stops:
+///
+/// | the signal                            | does                                    |
+/// | ------------------------------------- | --------------------------------------- |
+/// | SIGINT, SIGTERM or SIGQUIT, the first | nothing if another signal came first    |
+/// | SIGINT, SIGTERM or SIGQUIT, the next  | ends the program at once                |
+/// | any other                             | nothing                                 |
+///
+/// A terminal that closes sends SIGHUP more than once, and the session manager then sends SIGTERM.
 class StopSignals {
 public:
     StopSignals();
@@ -40,6 +48,9 @@ public:
     /// Returns when told to stop.
     void wait();
 
+    /// Runs `work`, the end of the program after wait(), and handles signals meanwhile.
+    void finish(const std::function<void()>& work);
+
     /// Where the task runs.
     [[nodiscard]] boost::asio::any_io_executor executor() { return context_.get_executor(); }
 
@@ -49,6 +60,7 @@ private:
         boost::asio::cancellation_signal& cancel,
         const std::function<void()>& stop
     );
+    void wait_for_signal();
 
     boost::asio::io_context context_;
     boost::asio::signal_set signals_;

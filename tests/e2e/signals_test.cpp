@@ -83,6 +83,17 @@ TEST(ServeSignals, AClosingTerminalHangsUpTwiceAndTheMotorIsStoppedAllTheSame) {
     lidar.process.wait_for_log("motor off");
 }
 
+TEST(ServeSignals, ATerminationAfterAHangUpDoesNotKeepTheMotorFromBeingStopped) {
+    VirtualLidarProcess lidar;
+    GatewayProcess gateway({"--lidar", lidar.port});
+    gateway.process.wait_for_log("scanning");
+    gateway.process.signal(SIGHUP);
+    gateway.process.wait_for_log("stopping");
+    gateway.process.signal(SIGTERM);
+    EXPECT_EQ(gateway.process.wait(), 0);
+    lidar.process.wait_for_log("motor off");
+}
+
 TEST(ServeSignals, AHangUpThatNohupIgnoresStaysIgnored) {
     Process serve(
         {"/bin/sh",

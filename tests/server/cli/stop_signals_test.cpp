@@ -9,12 +9,19 @@
 
 #include <chrono>
 #include <csignal>
+#include <signal.h>  // NOLINT(modernize-deprecated-headers): sigaction is POSIX, not C++
 #include <stdexcept>
+#include <thread>
 
 namespace sweepcast::cli {
 namespace {
 
 namespace asio = boost::asio;
+
+bool has_default_action(int signal) {
+    struct sigaction action {};
+    return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_DFL;
+}
 
 asio::awaitable<void> set(bool& ran) {
     ran = true;
@@ -93,6 +100,40 @@ TEST(StopSignals, ASignalBetweenTasksIsNotLost) {
     ASSERT_TRUE(signals.run(set(ran)));
     std::raise(SIGTERM);
     signals.wait();
+}
+
+TEST(StopSignals, ASecondCommandToStopEndsTheProgramAtOnce) {
+    StopSignals signals;
+    std::raise(SIGINT);
+    signals.wait();
+    EXPECT_TRUE(has_default_action(SIGINT));
+    EXPECT_TRUE(has_default_action(SIGTERM));
+    EXPECT_TRUE(has_default_action(SIGQUIT));
+}
+
+TEST(StopSignals, ATerminationAfterAHangUpDoesNotEndTheProgramButASecondOneDoes) {
+    std::signal(SIGHUP, SIG_DFL);  // a test under nohup ignores it
+    StopSignals signals;
+    std::raise(SIGHUP);
+    signals.wait();
+    ASSERT_FALSE(has_default_action(SIGTERM));
+    std::raise(SIGTERM);
+    bool ran = false;
+    EXPECT_FALSE(signals.run(set(ran)));
+    EXPECT_TRUE(has_default_action(SIGTERM));
+}
+
+TEST(StopSignals, SignalsAreHandledWhileTheProgramFinishes) {
+    std::signal(SIGHUP, SIG_DFL);
+    StopSignals signals;
+    std::raise(SIGHUP);
+    signals.wait();
+    signals.finish([] {
+        std::raise(SIGTERM);
+        while (!has_default_action(SIGTERM)) {
+            std::this_thread::yield();
+        }
+    });
 }
 
 }  // namespace
