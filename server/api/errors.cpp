@@ -1,6 +1,7 @@
 #include "server/api/errors.hpp"
 
 #include "driver/device/error.hpp"
+#include "driver/protocol/printable.hpp"
 #include "server/api/json.hpp"
 #include "sweepcast/v1/api.pb.h"
 
@@ -38,8 +39,8 @@ Response error_response(
 ) {
     v1::ErrorResponse response;
     response.mutable_error()->set_code(code);
-    response.mutable_error()->set_message(message);
-    response.mutable_error()->set_hint(hint);
+    response.mutable_error()->set_message(protocol::printable(message));
+    response.mutable_error()->set_hint(protocol::printable(hint));
     return {status, "application/json", to_json(response), {}};
 }
 

@@ -8,7 +8,8 @@
 
 namespace sweepcast::api {
 
-/// {"error": {"code", "message", "hint"}} with this status.
+/// Returns {"error": {"code", "message", "hint"}} with this status. Message and hint may quote any
+/// bytes: they are sent as protocol::printable() shows them.
 [[nodiscard]] Response error_response(
     int status,
     const std::string& code,

@@ -400,6 +400,23 @@ TEST_F(ApiTest, RefusesParametersThatItDoesNotKnow) {
     EXPECT_TRUE(control.orders.empty()) << "nothing was done";
 }
 
+TEST_F(ApiTest, ErrorsShowTheBytesOfARequestThatAreNotUtf8) {
+    publish_sweep();
+    EXPECT_EQ(error_in(ask("GET", "/api/v1/lidars/%ff")).message(), "there is no lidar \"\\xff\"");
+    EXPECT_EQ(error_in(ask("GET", "/api/v1/lidars?a%ff=1")).message(), "no parameter \"a\\xff\"");
+    const auto format = ask("GET", "/api/v1/lidars/A0E1C2D3/scan?format=%ff");
+    EXPECT_EQ(format.status, 400);
+    EXPECT_THAT(error_in(format).message(), HasSubstr("\"\\xff\""));
+    EXPECT_EQ(error_in(ask("GET", "/%ff")).message(), "there is nothing at /\\xff");
+}
+
+TEST_F(ApiTest, ErrorsShowControlCharactersOfARequestAsEscapes) {
+    EXPECT_EQ(
+        error_in(ask("GET", "/api/v1/lidars/a%1b%0ab")).message(),
+        "there is no lidar \"a\\u001b\\nb\""
+    );
+}
+
 TEST_F(ApiTest, RefusesAParameterThatIsThereTwice) {
     publish_sweep();
     const auto response = ask("GET", "/api/v1/lidars/A0E1C2D3/scan?format=csv&format=json");

@@ -259,6 +259,15 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& host) { return host.param.what; }
 );
 
+TEST_F(HttpSessionTest, ShowsTheBytesOfAHostHeaderThatAreNotUtf8) {
+    const auto answer = ask("GET /healthz HTTP/1.1\r\nHost: \xff\xfe\r\n\r\n");
+    EXPECT_EQ(answer.status, 400);
+    EXPECT_THAT(
+        answer.body,
+        HasSubstr(R"(the Host header \"\\xff\\xfe\" is no host name or address)")
+    );
+}
+
 TEST_F(HttpSessionTest, SaysHowAnotherNameBecomesOurs) {
     const auto answer = ask("GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n");
     EXPECT_THAT(answer.body, HasSubstr("\"unknown_host\""));
