@@ -47,7 +47,10 @@ Problem explain(const CLI::App& app, const CLI::ParseError& wrong) {
         return {{}, fmt::format("there is no command \"{}\"", *named), hint};
     }
     if (!unknown.empty()) {
-        return {{}, fmt::format("{} needs a command before it", unknown.front()), hint};
+        return {
+            {},
+            fmt::format("there is no option \"{}\" before a command", unknown.front()),
+            "give a command first; " + hint};
     }
     return {{}, "a command is missing", hint};
 }

@@ -104,7 +104,8 @@ std::optional<Response> refuse_parameters(const Request& request, std::string_vi
                 400,
                 "unknown_parameter",
                 fmt::format("no parameter \"{}\"", name),
-                known.empty() ? "this takes no parameters" : fmt::format("parameters: {}", known)
+                known.empty() ? "this request takes no query parameters"
+                              : fmt::format("parameters: {}", known)
             );
         }
     }
@@ -112,8 +113,8 @@ std::optional<Response> refuse_parameters(const Request& request, std::string_vi
         return error_response(
             400,
             "repeated_parameter",
-            fmt::format("\"{}\" is there twice", known),
-            "say it once"
+            fmt::format("the parameter \"{}\" is given twice", known),
+            "give it once"
         );
     }
     return std::nullopt;

@@ -49,13 +49,14 @@ Problem too_many_lidars(const StreamUrl& url) {
     return {
         make_error_code(boost::system::errc::value_too_large),
         fmt::format(
-            "{}:{} names more than {} lidars, or names of more than {} bytes: those are left out",
+            "{}:{} has more than {} lidars, or lidars with names longer than {} bytes; "
+            "this program ignores those",
             url.url_host(),
             url.port,
             most_lidars,
             longest_lidar_name
         ),
-        "is it a gateway of yours? Subscribe to one of its lidars"};
+        "check the address; to receive a lidar that is ignored, subscribe to it by its id"};
 }
 
 Problem cancelled_by_user() {

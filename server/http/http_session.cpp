@@ -136,7 +136,7 @@ std::optional<api::Response> wrong_host(const BeastRequest& request, const HostN
         return api::error_response(
             421,
             "unknown_host",
-            fmt::format("this gateway does not know itself as \"{}\"", host),
+            fmt::format("this gateway does not answer to the host name \"{}\"", host),
             "use the IP address of the gateway's machine or its host name; if it has other names, "
             "start the gateway with --host-name NAME"
         );

@@ -175,8 +175,8 @@ Result<v1::Subscribe, Refusal> subscribe_from_query(const Query& query) {
         if (!seen.insert(parameter->name).second && !parameter->is_list) {
             return Refusal{
                 "repeated_parameter",
-                fmt::format("\"{}\" is there twice", key),
-                "say it once"};
+                fmt::format("the parameter \"{}\" is given twice", key),
+                "give it once"};
         }
         if (!parameter->read(value, subscribe)) {
             return Refusal{

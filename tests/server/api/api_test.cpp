@@ -395,7 +395,7 @@ TEST_F(ApiTest, RefusesParametersThatItDoesNotKnow) {
         const auto refused = ask(method, path + "?mode=Express");
         EXPECT_EQ(refused.status, 400) << method << " " << path;
         EXPECT_EQ(error_in(refused).code(), "unknown_parameter") << path;
-        EXPECT_EQ(error_in(refused).hint(), "this takes no parameters") << path;
+        EXPECT_EQ(error_in(refused).hint(), "this request takes no query parameters") << path;
     }
     EXPECT_TRUE(control.orders.empty()) << "nothing was done";
 }
@@ -422,6 +422,7 @@ TEST_F(ApiTest, RefusesAParameterThatIsThereTwice) {
     const auto response = ask("GET", "/api/v1/lidars/A0E1C2D3/scan?format=csv&format=json");
     EXPECT_EQ(response.status, 400);
     EXPECT_EQ(error_in(response).code(), "repeated_parameter");
+    EXPECT_EQ(error_in(response).message(), "the parameter \"format\" is given twice");
 }
 
 TEST_F(ApiTest, HealthCountsLidarsAndSubscribers) {
