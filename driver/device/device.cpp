@@ -80,7 +80,8 @@ asio::awaitable<void> Device::run() {
         }
         auto life = live();
         const auto problem = co_await guarded(std::move(life));
-        wanted_.reset = false;  // the next attempt begins from scratch anyway
+        // A lidar that takes long to boot must not be reset again by each attempt to reach it.
+        wanted_.reset = false;
         if (!wanted_.shutdown && !examination_) {
             co_await await_attempt(problem);
         }

@@ -116,8 +116,9 @@ public:
     boost::asio::awaitable<Result<void, Problem>> stop();
 
     /// Reboots the lidar (RESET, protocol.md 11.2); a scan that was wanted is started again.
-    /// Returns once the lidar has answered and, where wanted, scans. Errors: as start(); not_ready
-    /// also if there is no lidar, for a reset is not kept for one that comes later.
+    /// Returns once the lidar has answered and, where wanted, scans. Errors: as start(), but a
+    /// pending reset is kept only as long as the connection lasts; not_ready also if there is no
+    /// lidar, because a reset is not kept for one that comes later.
     boost::asio::awaitable<Result<void, Problem>> reset();
 
     /// Has it scan in another mode from now on, or from the next start on. Returns once it does.
