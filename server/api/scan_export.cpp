@@ -17,6 +17,33 @@ std::int64_t microseconds_after(protocol::SampleTime first, protocol::SampleTime
     return (time - first).count();
 }
 
+/// Returns how long after `first` a sample was taken, or the nearest value that the message holds.
+/// A gateway that the scan comes from may say any time.
+std::int32_t bounded_microseconds_after(protocol::SampleTime first, protocol::SampleTime time) {
+    using Limits = std::numeric_limits<std::int32_t>;
+    return static_cast<std::int32_t>(
+        std::clamp<std::int64_t>(microseconds_after(first, time), Limits::min(), Limits::max())
+    );
+}
+
+/// Sets the UNIX time of a moment, if it is known. Adds microseconds, because the nanoseconds of a
+/// hostile gateway's time may not fit into 64 bits.
+void set_time(
+    protocol::SampleTime moment,
+    std::chrono::nanoseconds monotonic_to_unix,
+    v1::LatestScan& scan
+) {
+    const auto offset = std::chrono::floor<std::chrono::microseconds>(monotonic_to_unix);
+    const auto unix_time = moment.time_since_epoch() + offset;
+    if (unix_time.count() <= 0) {
+        return;
+    }
+    const auto seconds = std::chrono::floor<std::chrono::seconds>(unix_time);
+    const std::chrono::nanoseconds rest = unix_time - seconds + (monotonic_to_unix - offset);
+    scan.mutable_time()->set_seconds(seconds.count());
+    scan.mutable_time()->set_nanos(static_cast<std::int32_t>(rest.count()));
+}
+
 /// When the earliest of the samples was taken; there must be one. Bins go by angle, not by time.
 protocol::SampleTime earliest(const std::vector<protocol::Sample>& samples) {
     return std::ranges::min_element(samples, {}, &protocol::Sample::time)->time;
@@ -34,18 +61,12 @@ void to_message(const device::CapturedSweep& captured, v1::LatestScan& scan) {
         return;
     }
     const auto first = earliest(samples);
-    const std::chrono::nanoseconds unix_time =
-        first.time_since_epoch() + captured.monotonic_to_unix;
-    if (unix_time.count() > 0) {
-        const auto seconds = std::chrono::floor<std::chrono::seconds>(unix_time);
-        scan.mutable_time()->set_seconds(seconds.count());
-        scan.mutable_time()->set_nanos(static_cast<std::int32_t>((unix_time - seconds).count()));
-    }
+    set_time(first, captured.monotonic_to_unix, scan);
     for (const auto& sample : samples) {
         scan.add_angle_deg(sample.angle.degrees());
         scan.add_distance_mm(sample.distance.millimetres());
         scan.add_quality(sample.quality);
-        scan.add_time_us(static_cast<std::int32_t>(microseconds_after(first, sample.time)));
+        scan.add_time_us(bounded_microseconds_after(first, sample.time));
     }
 }
 

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cstdint>
+#include <limits>
+
 namespace sweepcast::api {
 namespace {
 
@@ -50,6 +54,28 @@ TEST(ToMessage, IsInPlainUnits) {
     EXPECT_DOUBLE_EQ(scan.distance_mm(0), 1000.25);
     EXPECT_EQ(scan.quality(0), 188U);
     EXPECT_EQ(scan.time_us(1), 250);
+}
+
+TEST(ToMessage, ATimeThatDoesNotFitIsTheLargestThatDoes) {
+    auto sweep = two_samples();
+    sweep.sweep.samples.back().time += std::chrono::microseconds(std::int64_t{1} << 42U);
+    v1::LatestScan scan;
+    to_message(sweep, scan);
+    EXPECT_EQ(scan.time_us(0), 0);
+    EXPECT_EQ(scan.time_us(1), std::numeric_limits<std::int32_t>::max());
+}
+
+TEST(ToMessage, TheUnixTimeOfAnyMomentIsInRange) {
+    // The moment itself does not fit into 64 bits of nanoseconds.
+    auto sweep = two_samples();
+    for (auto& sample : sweep.sweep.samples) {
+        sample.time = protocol::SampleTime(std::chrono::microseconds(9'225'000'000'000'000));
+    }
+    sweep.monotonic_to_unix = std::chrono::nanoseconds(1'000'000'001);
+    v1::LatestScan scan;
+    to_message(sweep, scan);
+    EXPECT_EQ(scan.time().seconds(), 9'225'000'001);
+    EXPECT_EQ(scan.time().nanos(), 1);
 }
 
 TEST(ToMessage, ASweepWithoutSamplesHasNoTime) {
