@@ -45,16 +45,17 @@ Problem no_gateway(const error_code& failed, const StreamUrl& url) {
         "check the port: usually tcp://HOST:8081, or ws://HOST:8080 for HTTP's"};
 }
 
-Problem too_many_lidars(const StreamUrl& url) {
+Problem beyond_bounds(const StreamUrl& url) {
     return {
         make_error_code(boost::system::errc::value_too_large),
         fmt::format(
-            "{}:{} has more than {} lidars, or lidars with names longer than {} bytes; "
-            "this program ignores those",
+            "{}:{} has more than {} lidars, or lidars with names longer than {} bytes or with states "
+            "larger than {} kB; this program ignores those",
             url.url_host(),
             url.port,
             most_lidars,
-            longest_lidar_name
+            longest_lidar_name,
+            most_lidar_memory / 1024
         ),
         "check the address; to receive a lidar that is ignored, subscribe to it by its id"};
 }
@@ -357,7 +358,7 @@ std::optional<Event> Client::Impl::leave_out(std::uint64_t how_many) {
     if (how_many == 0 || std::exchange(left_out_told, true)) {
         return std::nullopt;
     }
-    return LeftOut{too_many_lidars(url)};
+    return LeftOut{beyond_bounds(url)};
 }
 
 /// Whether the lidar is there now that a wish was refused for.

@@ -45,8 +45,9 @@ struct Scan {
     frame::DecodedScan scan;
 };
 
-/// The gateway names more lidars than a client keeps (256), or names of more than 256 bytes: what
-/// it says of those is left out. Once per connection; Client::left_out() counts on.
+/// The gateway has more lidars than a client keeps (256), names of more than 256 bytes, or states
+/// of more than 64 kB. The client leaves out what the gateway says of those. This event comes once
+/// per connection; Client::left_out() counts on.
 struct LeftOut {
     Problem why;
 };

@@ -19,7 +19,8 @@ std::uint64_t KnownLidars::begin(v1::Hello& hello) {
 }
 
 bool KnownLidars::admit(const v1::Lidar& lidar) {
-    if (lidar.id().size() > longest_lidar_name) {
+    // In memory, not on the wire: there an empty part of a list takes two bytes only.
+    if (lidar.id().size() > longest_lidar_name || lidar.SpaceUsedLong() > most_lidar_memory) {
         return false;
     }
     if (numbers_.size() >= most_lidars) {

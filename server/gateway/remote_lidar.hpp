@@ -92,7 +92,7 @@ private:
     std::shared_ptr<spdlog::logger> log_;
     std::unique_ptr<client::Client> client_;  ///< null: the life has ended
     hub::LidarFrames frames_;
-    /// The other gateway's lidars, by number; the client bounds how many.
+    /// The other gateway's lidars, by number. The client bounds how many, and the memory of each.
     std::map<std::uint32_t, v1::Lidar> there_;
     std::optional<std::uint32_t> chosen_;    ///< which of them it is
     std::optional<v1::Subscribe> due_wish_;  ///< to be sent

@@ -377,6 +377,35 @@ TEST_F(ClientTest, LeavesOutTheLidarsBeyondItsBoundAndSaysSoOnce) {
     gateway.join();
 }
 
+TEST_F(ClientTest, LeavesOutTheStatesThatTakeTooMuchMemory) {
+    BlockingClient client(url(), impatient());
+    std::thread gateway([this] {
+        auto peer = accept();
+        v1::ServerMessage greeting;
+        greeting.mutable_hello()->set_protocol_version(1);
+        for (const auto size : {most_lidar_memory / 2, most_lidar_memory + 1}) {
+            greeting.mutable_hello()->add_lidars()->set_hint(std::string(size, 'A'));
+        }
+        peer.say(greeting);
+        auto wordy = state_of(0, "wordy");
+        wordy.mutable_lidar()->set_hint(std::string(most_lidar_memory + 1, 'A'));
+        peer.say(wordy);
+        auto many_parts = state_of(0, "many parts");
+        while (many_parts.lidar().modes_size() < 10'000) {
+            many_parts.mutable_lidar()->add_modes();  // two bytes each on the wire
+        }
+        EXPECT_LT(many_parts.ByteSizeLong(), most_lidar_memory);
+        peer.say(many_parts);
+        peer.say(state_of(0, "small"));
+        peer.hear();  // holds until the client has seen it all
+    });
+    EXPECT_EQ(expect_next<Connected>(client).hello.lidars_size(), 1);
+    expect_next<LeftOut>(client);
+    EXPECT_EQ(expect_next<v1::Lidar>(client).id(), "small");
+    client.set_wish(std::nullopt);
+    gateway.join();
+}
+
 TEST_F(ClientTest, LeavesOutTheFramesOfLidarsBeyondItsBound) {
     BlockingClient client(url(), impatient());
     std::thread gateway([this] {
