@@ -1,5 +1,6 @@
 #include "server/gateway/remote_lidar.hpp"
 
+#include "server/hub/named_lidar.hpp"
 #include "server/stream/lidar_message.hpp"
 #include "server/stream/messages.hpp"
 
@@ -10,6 +11,7 @@
 #include <string_view>
 #include <utility>
 #include <variant>
+#include <vector>
 
 namespace sweepcast::gateway {
 
@@ -23,7 +25,6 @@ namespace {
 constexpr std::size_t most_hops = 4;
 constexpr std::string_view via = " via ";
 constexpr double sector_deg = 30;
-constexpr std::size_t short_serial_digits = 8;
 /// How many bytes of ids a hint lists.
 constexpr std::size_t enough_ids = 200;
 
@@ -39,6 +40,15 @@ std::size_t hops(std::string_view url) {
         ++count;
     }
     return count;
+}
+
+/// Returns the names by which a lidar's own gateway finds it, as far as the state tells them.
+hub::LidarNames names_there(const v1::Lidar& lidar) {
+    const std::string_view url = lidar.url();
+    const auto last = url.rfind(via);
+    const auto place =
+        parse_lidar_url(last == std::string_view::npos ? url : url.substr(last + via.size()));
+    return {lidar.id(), lidar.device().serial_number(), place ? port_name(*place) : std::string()};
 }
 
 v1::Subscribe wish_for(const v1::Lidar& lidar) {
@@ -176,50 +186,50 @@ void RemoteLidar::take(const client::LeftOut& left_out) {
     log_->warn("{}", left_out.why.cause);
 }
 
-bool RemoteLidar::is_meant(const v1::Lidar& lidar) const {
-    const auto& id = place_.where.id;
-    // As at its own gateway: its id, its serial number or the digits that begin it, its port's
-    // name.
-    const std::string_view serial = lidar.device().serial_number();
-    return id.empty() || lidar.id() == id || lidar.url().ends_with("/" + id) ||
-           (!serial.empty() && (serial == id || serial.substr(0, short_serial_digits) == id));
-}
-
 /// Finds out which of the other gateway's lidars it is, and what to do then.
 void RemoteLidar::choose() {
     std::string ids;
-    std::size_t meant = 0;
+    std::vector<std::uint32_t> numbers;
+    std::vector<hub::LidarNames> names;
     for (const auto& [number, lidar] : there_) {
         if (ids.size() < enough_ids) {
             ids += (ids.empty() ? "" : ", ") + lidar.id();
         } else if (!ids.ends_with(", ...")) {
             ids += ", ...";
         }
-        if (is_meant(lidar)) {
-            ++meant;
-            chosen_ = number;
-        }
+        numbers.push_back(number);
+        names.push_back(names_there(lidar));
+    }
+    const auto& name = place_.where.id;
+    auto found = hub::find_named(names, name);
+    if (name.empty() && names.size() == 1) {
+        found.index = 0;  // the only one
     }
     const auto gateway = fmt::format("the gateway at {}:{}", place_.where.host, place_.where.port);
-    if (meant == 0) {
-        fail(
-            {{},
-             place_.where.id.empty()
-                 ? gateway + " has no lidar"
-                 : fmt::format("{} has no lidar \"{}\"", gateway, place_.where.id),
-             ids.empty() ? "start it with one" : "it has: " + ids}
-        );
-    } else if (meant > 1) {
-        chosen_.reset();
-        fail(
-            {{},
-             fmt::format("{} has {} lidars", gateway, there_.size()),
-             fmt::format("say which: {}/ID; it has: {}", place_.url, ids)}
-        );
-    } else {
+    if (found.index) {
+        chosen_ = numbers[*found.index];
         const auto& lidar = there_.at(*chosen_);
         due_wish_ = wish_for(lidar);
         mirror(lidar);
+    } else if (found.is_ambiguous) {
+        fail(
+            {{},
+             fmt::format("{} has several lidars that \"{}\" fits", gateway, name),
+             "name one by its id: it has: " + ids}
+        );
+    } else if (name.empty() && !names.empty()) {
+        fail(
+            {{},
+             fmt::format("{} has {} lidars", gateway, names.size()),
+             fmt::format("say which: {}/ID; it has: {}", place_.url, ids)}
+        );
+    } else {
+        fail(
+            {{},
+             name.empty() ? gateway + " has no lidar"
+                          : fmt::format("{} has no lidar \"{}\"", gateway, name),
+             ids.empty() ? "start it with one" : "it has: " + ids}
+        );
     }
 }
 

@@ -76,7 +76,6 @@ private:
     void take(const client::LeftOut& left_out);
 
     void choose();
-    [[nodiscard]] bool is_meant(const v1::Lidar& lidar) const;
     void mirror(const v1::Lidar& lidar);
     void claim_id(const v1::Lidar& lidar);
     void publish_sweep(protocol::SampleTime arrival);

@@ -1,6 +1,7 @@
 #include "server/hub/local_hub.hpp"
 
 #include "driver/protocol/reply.hpp"
+#include "server/hub/named_lidar.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -181,32 +182,19 @@ void LocalHub::close_all(const frame::WireMessagePtr& farewell, const std::strin
     }
 }
 
-LidarSnapshotPtr LocalHub::find(std::string_view id) const {
-    const auto first = [this](auto is_meant) {
-        const auto found = std::ranges::find_if(lidars_, [&](const auto& lidar) {
-            return lidar && is_meant(*lidar);
-        });
-        return found != lidars_.end() ? *found : nullptr;
-    };
-    if (auto by_id = first([&](const auto& lidar) { return lidar.id == id; })) {
-        return by_id;
+LidarSnapshotPtr LocalHub::find(std::string_view name) const {
+    std::vector<LidarNames> names(lidars_.size());
+    for (std::size_t i = 0; i < lidars_.size(); ++i) {
+        if (lidars_[i]) {
+            const auto& info = lidars_[i]->state.info;
+            names[i] = {
+                lidars_[i]->id,
+                info ? protocol::serial_text(info->serial) : std::string(),
+                lidars_[i]->port_name};
+        }
     }
-    const auto has_serial = [&](const LidarSnapshot& lidar) {
-        return lidar.state.info && protocol::serial_text(lidar.state.info->serial) == id;
-    };
-    if (auto by_serial = first(has_serial)) {
-        return by_serial;
-    }
-    const auto has_digits = [&](const LidarSnapshot& lidar) {
-        return lidar.state.info && protocol::short_serial_text(lidar.state.info->serial) == id;
-    };
-    const auto of_all = std::ranges::count_if(lidars_, [&](const auto& lidar) {
-        return lidar && has_digits(*lidar);
-    });
-    if (of_all == 1) {
-        return first(has_digits);
-    }
-    return first([&](const auto& lidar) { return lidar.port_name == id; });
+    const auto found = find_named(names, name).index;
+    return found ? lidars_[*found] : nullptr;
 }
 
 std::shared_ptr<const device::CapturedSweep> LocalHub::latest_sweep(std::uint32_t number) const {

@@ -70,10 +70,8 @@ public:
 
     /// All lidars, by number.
     [[nodiscard]] const std::vector<LidarSnapshotPtr>& lidars() const { return lidars_; }
-    /// Returns the lidar with this id. If there is none: the one with this serial number, then the
-    /// only one whose serial number begins with these eight digits, then the one with this port
-    /// name, else null.
-    [[nodiscard]] LidarSnapshotPtr find(std::string_view id) const;
+    /// Returns the lidar that this name means (see find_named), or null.
+    [[nodiscard]] LidarSnapshotPtr find(std::string_view name) const;
     /// A lidar's latest sweep, or null.
     [[nodiscard]] std::shared_ptr<const device::CapturedSweep> latest_sweep(std::uint32_t number
     ) const;

@@ -200,6 +200,62 @@ TEST(RemoteLidar, MustBeNamedWhereThereAreSeveral) {
     EXPECT_THAT(lidars[3].cause(), HasSubstr("no lidar \"middle\""));
 }
 
+void say(tcp::socket& socket, const v1::ServerMessage& message) {
+    const frame::WireMessage wire(message);
+    const auto bytes = wire.framed(frame::Framing::delimited);
+    for (const auto part : {bytes.head, bytes.tail}) {
+        asio::write(socket, asio::buffer(part.data(), part.size()));
+    }
+}
+
+/// A gateway that the test plays: it takes the connection of the gateway under test.
+class PlayedGateway {
+public:
+    [[nodiscard]] std::string address() const {
+        return "127.0.0.1:" + std::to_string(acceptor_.local_endpoint().port());
+    }
+    tcp::socket accept() { return acceptor_.accept(); }
+
+private:
+    asio::io_context context_;
+    tcp::acceptor acceptor_{context_, {asio::ip::make_address("127.0.0.1"), 0}};
+};
+
+v1::ServerMessage greeting() {
+    v1::ServerMessage message;
+    message.mutable_hello()->set_protocol_version(1);
+    return message;
+}
+
+v1::Lidar scanning(std::uint32_t number, const std::string& id, const std::string& serial) {
+    v1::Lidar lidar;
+    lidar.set_number(number);
+    lidar.set_id(id);
+    lidar.set_url("/dev/ttyUSB" + std::to_string(number) + "?mode=Boost");
+    lidar.set_state(v1::Lidar::SCANNING);
+    lidar.mutable_device()->set_serial_number(serial);
+    return lidar;
+}
+
+TEST(RemoteLidar, IsFoundByTheNamesThatItsOwnGatewayFindsItBy) {
+    const std::string first_serial = "A0A0A0A0000000000000000000000001";
+    const std::string second_serial = "A0A0A0A0000000000000000000000002";
+    PlayedGateway there;
+    for (const auto& name : {std::string("A0A0A0A0"), second_serial, std::string("ttyUSB2")}) {
+        GatewayProcess here({"--lidar", remote(there.address(), "/" + name)});
+        auto peer = there.accept();
+        auto hello = greeting();
+        *hello.mutable_hello()->add_lidars() = scanning(1, first_serial, first_serial);
+        *hello.mutable_hello()->add_lidars() = scanning(2, "A0A0A0A0", second_serial);
+        say(peer, hello);
+        Subscriber far("tcp://" + here.tcp);
+        const auto state = far.wait_for_lidar([](const v1::Lidar& lidar) {
+            return lidar.state() == v1::Lidar::SCANNING || !lidar.cause().empty();
+        });
+        EXPECT_EQ(state.device().serial_number(), second_serial) << name << ": " << state.cause();
+    }
+}
+
 /// A stream's address that nobody has any more.
 std::string free_address() {
     return GatewayProcess({"--lidar", "virtual:a1m8"}).tcp;
@@ -224,14 +280,6 @@ TEST(RemoteLidar, InALoopOfGatewaysFailsAndSaysSo) {
         return message.lidar().cause().find("a loop of them") != std::string::npos;
     });
     EXPECT_EQ(http(first.http, "GET", "/healthz").status, 200);
-}
-
-void say(tcp::socket& socket, const v1::ServerMessage& message) {
-    const frame::WireMessage wire(message);
-    const auto bytes = wire.framed(frame::Framing::delimited);
-    for (const auto part : {bytes.head, bytes.tail}) {
-        asio::write(socket, asio::buffer(part.data(), part.size()));
-    }
 }
 
 std::size_t count(const std::string& text, const std::string& part) {
