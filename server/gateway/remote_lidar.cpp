@@ -146,6 +146,7 @@ void RemoteLidar::take(const client::Connected& connected) {
     log_->info("connected to {}", connected.hello.server());
     there_.clear();
     chosen_.reset();
+    is_refused_ = false;
     for (const auto& lidar : connected.hello.lidars()) {
         there_[lidar.number()] = lidar;
     }
@@ -161,8 +162,14 @@ void RemoteLidar::take(const v1::Lidar& lidar) {
     there_[lidar.number()] = lidar;
     if (!chosen_) {
         choose();
-    } else if (*chosen_ == lidar.number()) {
+    } else if (*chosen_ == lidar.number() && !is_refused_) {
         mirror(lidar);
+    }
+}
+
+void RemoteLidar::take(const v1::Subscribed&) {
+    if (std::exchange(is_refused_, false) && chosen_) {
+        mirror(there_.at(*chosen_));
     }
 }
 
@@ -170,10 +177,15 @@ void RemoteLidar::take(const v1::StreamError& refusal) {
     if (refusal.code() == "lidar_not_found") {
         return;  // choose() says so, and waits for it
     }
-    if (!refusals_.count(std::chrono::steady_clock::now())) {
-        return;  // the state tells of the first of this second
+    is_refused_ = true;
+    const Problem why{{}, refusal.message(), refusal.hint()};
+    if (fails_by(why)) {
+        return;
     }
-    fail({{}, refusal.message(), refusal.hint()});
+    if (refusals_.count(std::chrono::steady_clock::now())) {
+        log_failure(why);
+    }
+    publish_failure(why);
 }
 
 void RemoteLidar::take(const v1::StreamStats& stats) {
@@ -208,6 +220,7 @@ void RemoteLidar::choose() {
     const auto gateway = fmt::format("the gateway at {}:{}", place_.where.host, place_.where.port);
     if (found.index) {
         chosen_ = numbers[*found.index];
+        is_refused_ = false;  // the wish is sent again
         const auto& lidar = there_.at(*chosen_);
         due_wish_ = wish_for(lidar);
         mirror(lidar);
@@ -277,11 +290,25 @@ void RemoteLidar::give_up(Problem why) {
 
 /// Tells that it cannot be had, and of what is known of it.
 void RemoteLidar::fail(const Problem& why) {
-    hub::LidarSnapshot snapshot = *snapshot_;
-    if (snapshot.state.phase == device::Phase::backing_off && snapshot.state.cause == why.cause) {
+    if (fails_by(why)) {
         return;  // one attempt of many
     }
+    log_failure(why);
+    publish_failure(why);
+}
+
+/// Returns whether the state says already that the lidar is out of reach for this cause.
+bool RemoteLidar::fails_by(const Problem& why) const {
+    const auto& state = snapshot_->state;
+    return state.phase == device::Phase::backing_off && state.cause == why.cause;
+}
+
+void RemoteLidar::log_failure(const Problem& why) {
     log_->warn("{}: {}; {}", place_.url, why.cause, why.hint);
+}
+
+void RemoteLidar::publish_failure(const Problem& why) {
+    hub::LidarSnapshot snapshot = *snapshot_;
     snapshot.state.phase = device::Phase::backing_off;
     snapshot.state.since = std::chrono::system_clock::now();
     snapshot.state.cause = why.cause;

@@ -71,7 +71,7 @@ private:
     void take(client::Scan scan);
     void take(const v1::Lidar& lidar);
     void take(const v1::StreamError& refusal);
-    void take(const v1::Subscribed&) {}
+    void take(const v1::Subscribed& subscribed);
     void take(const v1::StreamStats& stats);
     void take(const client::LeftOut& left_out);
 
@@ -80,6 +80,9 @@ private:
     void claim_id(const v1::Lidar& lidar);
     void publish_sweep(protocol::SampleTime arrival);
     void fail(const Problem& why);
+    [[nodiscard]] bool fails_by(const Problem& why) const;
+    void log_failure(const Problem& why);
+    void publish_failure(const Problem& why);
     void give_up(Problem why);
     void publish(hub::LidarSnapshot snapshot);
     [[nodiscard]] Problem controlled_elsewhere() const;
@@ -95,7 +98,10 @@ private:
     std::map<std::uint32_t, v1::Lidar> there_;
     std::optional<std::uint32_t> chosen_;    ///< which of them it is
     std::optional<v1::Subscribe> due_wish_;  ///< to be sent
-    net::OncePerSecond refusals_;            ///< so that the other gateway cannot fill the log
+    /// The other gateway refused the wish: there are no frames, whatever the state there.
+    bool is_refused_{};
+    // Log lines only, so that the other gateway cannot fill the log:
+    net::OncePerSecond refusals_;
     net::OncePerSecond losses_;
     RemoteClock clock_;
     std::chrono::microseconds offset_{};  ///< of the sweep under way
