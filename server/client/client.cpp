@@ -60,6 +60,23 @@ Problem beyond_bounds(const StreamUrl& url) {
         "check the address; to receive a lidar that is ignored, subscribe to it by its id"};
 }
 
+/// Shortens what a gateway says to longest_text bytes, at the end of a character.
+void shorten(std::string& text) {
+    if (text.size() > longest_text) {
+        auto end = longest_text;
+        while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) {
+            --end;
+        }
+        text = text.substr(0, end);
+    }
+}
+
+Event shortened(v1::StreamError refusal) {
+    shorten(*refusal.mutable_message());
+    shorten(*refusal.mutable_hint());
+    return refusal;
+}
+
 Problem cancelled_by_user() {
     return {make_error_code(asio::error::operation_aborted), "cancelled", ""};
 }
@@ -316,9 +333,10 @@ Result<std::optional<Event>, Problem> Client::Impl::take(const v1::ServerMessage
         if (message.error().code() == "lidar_not_found" && wish) {
             refused_lidar = wish->lidar();
         }
-        return std::optional<Event>(message.error());
+        return std::optional<Event>(shortened(message.error()));
     case v1::ServerMessage::kClosing:
         closing = message.closing().reason();
+        shorten(closing);
         break;
     case v1::ServerMessage::kHello:
     case v1::ServerMessage::MESSAGE_NOT_SET:

@@ -16,6 +16,7 @@ namespace sweepcast::client {
 constexpr std::size_t most_lidars = 256;
 constexpr std::size_t longest_lidar_name = 256;         ///< in bytes
 constexpr std::size_t most_lidar_memory = 64UL * 1024;  ///< bytes in memory of one lidar's state
+constexpr std::size_t longest_text = 1000;  ///< bytes of a refusal's or a farewell's words
 
 /// Of one connection. Lidars go by their numbers, of which a gateway may invent ever more.
 class KnownLidars {

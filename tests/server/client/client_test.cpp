@@ -406,6 +406,26 @@ TEST_F(ClientTest, LeavesOutTheStatesThatTakeTooMuchMemory) {
     gateway.join();
 }
 
+TEST_F(ClientTest, ShortensTheWordsOfARefusalAtTheEndOfACharacter) {
+    BlockingClient client(url(), impatient());
+    std::thread gateway([this] {
+        auto peer = accept();
+        peer.greet();
+        peer.hear();
+        v1::ServerMessage refusal;
+        refusal.mutable_error()->set_message(std::string(longest_text - 1, 'A') + "\u00b0C");
+        refusal.mutable_error()->set_hint(std::string(longest_text, 'A'));
+        peer.say(refusal);
+        peer.hear();  // holds until the client has seen it
+    });
+    expect_next<Connected>(client);
+    const auto refusal = expect_next<v1::StreamError>(client);
+    EXPECT_EQ(refusal.message(), std::string(longest_text - 1, 'A'));
+    EXPECT_EQ(refusal.hint().size(), longest_text);
+    client.set_wish(std::nullopt);
+    gateway.join();
+}
+
 TEST_F(ClientTest, LeavesOutTheFramesOfLidarsBeyondItsBound) {
     BlockingClient client(url(), impatient());
     std::thread gateway([this] {
