@@ -49,7 +49,8 @@ Problem beyond_bounds(const StreamUrl& url) {
     return {
         make_error_code(boost::system::errc::value_too_large),
         fmt::format(
-            "{}:{} has more than {} lidars, or lidars with names longer than {} bytes or with states "
+            "{}:{} has more than {} lidars, or lidars with names longer than {} bytes or with "
+            "states "
             "larger than {} kB; this program ignores those",
             url.url_host(),
             url.port,
