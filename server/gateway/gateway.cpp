@@ -114,15 +114,10 @@ Gateway::start(GatewayOptions options, const MakeLogger& make_logger) {
         return std::move(*problem);
     }
     std::unique_ptr<Gateway> gateway(new Gateway(std::move(options), make_logger));
-    // First what the options say: a wrong option is named even if another program has the ports.
-    if (auto added = gateway->add_lidars(make_logger); !added) {
-        return added.error();
-    }
-    if (auto listening = gateway->listen(make_logger); !listening) {
-        return listening.error();
-    }
-    if (auto problem = gateway->own_upstream()) {
-        return std::move(*problem);
+    if (auto ready = gateway->set_up(make_logger); !ready) {
+        // No lidar has been started, so all can go before the workers that they would run on.
+        gateway->lidars_.clear();
+        return ready.error();
     }
     for (auto& lidar : gateway->lidars_) {
         lidar->start();
@@ -158,6 +153,21 @@ Gateway::~Gateway() {
     http_.reset();
     tcp_.reset();
     workers_.clear();
+}
+
+/// Adds the lidars and opens the listeners; starts neither.
+Result<void, Problem> Gateway::set_up(const MakeLogger& make_logger) {
+    // First what the options say: a wrong option is named even if another program has the ports.
+    if (auto added = add_lidars(make_logger); !added) {
+        return added;
+    }
+    if (auto listening = listen(make_logger); !listening) {
+        return listening;
+    }
+    if (auto problem = own_upstream()) {
+        return std::move(*problem);
+    }
+    return {};
 }
 
 Result<void, Problem> Gateway::listen(const MakeLogger& make_logger) {

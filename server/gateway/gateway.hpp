@@ -78,6 +78,7 @@ private:
     [[nodiscard]] std::optional<Problem> own_upstream() const;
     Result<LidarPlace, Problem>
     place(const LidarUrl& url, std::uint32_t number, const MakeLogger& make_logger);
+    Result<void, Problem> set_up(const MakeLogger& make_logger);
     Result<void, Problem> listen(const MakeLogger& make_logger);
     void stop_lidars();
     void end_sessions();

@@ -113,6 +113,15 @@ TEST_P(MisuseTest, ExitsWithTwoAndSaysWhatIsWrongOnStandardError) {
     EXPECT_EQ(outcome.output, "");
 }
 
+TEST(CommandLine, AGatewayOfAnotherGatewaysLidarEndsIfThePortsAreTaken) {
+    const GatewayProcess first({"--lidar", "virtual:a1m8"});
+    const auto outcome = call(
+        {"serve", "--lidar", "sweepcast://" + first.tcp, "--http", first.http, "--tcp", first.tcp}
+    );
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.log, HasSubstr("cannot listen on " + first.http));
+}
+
 TEST(CommandLine, AWrongLidarIsNamedEvenIfThePortsAreTaken) {
     const GatewayProcess first({"--lidar", "virtual:a1m8"});
     const auto outcome =
